@@ -52,7 +52,13 @@ struct PathFile {
 impl Key {
     /// A camera at a time.
     pub fn new(time: f64, camera: &PlacedCamera) -> Key {
-        Key { time, eye: camera.eye, target: camera.target, up: camera.up, fov_y: camera.fov_y }
+        Key {
+            time,
+            eye: camera.eye,
+            target: camera.target,
+            up: camera.up,
+            fov_y: camera.fov_y,
+        }
     }
 
     fn check(&self) -> Result<(), String> {
@@ -70,7 +76,10 @@ impl Key {
     }
 
     fn camera(&self) -> PlacedCamera {
-        PlacedCamera { up: self.up, ..PlacedCamera::new(self.eye, self.target, self.fov_y) }
+        PlacedCamera {
+            up: self.up,
+            ..PlacedCamera::new(self.eye, self.target, self.fov_y)
+        }
     }
 
     /// Everything that is interpolated.
@@ -88,7 +97,9 @@ impl CameraPath {
     pub fn read(path: &Path) -> Result<CameraPath, Vec<Diagnostic>> {
         let mut sources = Sources::default();
         let file = sources.read(path).map_err(|e| {
-            vec![e.help(Some("give the path of a camera path, for example configs/paths/atrium.ron".into()))]
+            vec![e.help(Some(
+                "give the path of a camera path, for example configs/paths/atrium.ron".into(),
+            ))]
         })?;
         parse(&sources, file)
     }
@@ -106,18 +117,36 @@ impl CameraPath {
             false => time.clamp(first.time, last.time),
         };
         let i = keys.partition_point(|k| k.time <= time).saturating_sub(1);
-        let (a, Some(b)) = (&keys[i], keys.get(i + 1)) else { return last.camera() };
+        let (a, Some(b)) = (&keys[i], keys.get(i + 1)) else {
+            return last.camera();
+        };
         let h = b.time - a.time;
         let s = (time - a.time) / h;
         let (s2, s3) = (s * s, s * s * s);
-        let weights = [2.0 * s3 - 3.0 * s2 + 1.0, s3 - 2.0 * s2 + s, 3.0 * s2 - 2.0 * s3, s3 - s2];
+        let weights = [
+            2.0 * s3 - 3.0 * s2 + 1.0,
+            s3 - 2.0 * s2 + s,
+            3.0 * s2 - 2.0 * s3,
+            s3 - s2,
+        ];
         let (pa, pb) = (a.numbers(), b.numbers());
         let (ma, mb) = (self.tangent(i), self.tangent(i + 1));
         let n: [f32; 10] = std::array::from_fn(|c| {
-            (weights[0] * pa[c] + weights[1] * h * ma[c] + weights[2] * pb[c] + weights[3] * h * mb[c]) as f32
+            (weights[0] * pa[c]
+                + weights[1] * h * ma[c]
+                + weights[2] * pb[c]
+                + weights[3] * h * mb[c]) as f32
         });
-        let up = if Vec3::new(n[6], n[7], n[8]).length() > 1e-3 { (n[6], n[7], n[8]) } else { a.up };
-        let camera = PlacedCamera::new((n[0], n[1], n[2]), (n[3], n[4], n[5]), n[9].clamp(1.0, 170.0));
+        let up = if Vec3::new(n[6], n[7], n[8]).length() > 1e-3 {
+            (n[6], n[7], n[8])
+        } else {
+            a.up
+        };
+        let camera = PlacedCamera::new(
+            (n[0], n[1], n[2]),
+            (n[3], n[4], n[5]),
+            n[9].clamp(1.0, 170.0),
+        );
         PlacedCamera { up, ..camera }
     }
 
@@ -126,14 +155,28 @@ impl CameraPath {
         let keys = &self.keys;
         let last = keys.len() - 1;
         let slope = |a: usize| {
-            let (p, q, h) = (keys[a].numbers(), keys[a + 1].numbers(), keys[a + 1].time - keys[a].time);
+            let (p, q, h) = (
+                keys[a].numbers(),
+                keys[a + 1].numbers(),
+                keys[a + 1].time - keys[a].time,
+            );
             (std::array::from_fn::<f64, 10, _>(|c| (q[c] - p[c]) / h), h)
         };
         // The segments before and after; a path that repeats goes on where it began.
-        let before = if i > 0 { Some(i - 1) } else { self.repeat.then(|| last - 1) };
-        let after = if i < last { Some(i) } else { self.repeat.then_some(0) };
+        let before = if i > 0 {
+            Some(i - 1)
+        } else {
+            self.repeat.then(|| last - 1)
+        };
+        let after = if i < last {
+            Some(i)
+        } else {
+            self.repeat.then_some(0)
+        };
         match (before.map(slope), after.map(slope)) {
-            (Some((m0, h0)), Some((m1, h1))) => std::array::from_fn(|c| (m0[c] * h1 + m1[c] * h0) / (h0 + h1)),
+            (Some((m0, h0)), Some((m1, h1))) => {
+                std::array::from_fn(|c| (m0[c] * h1 + m1[c] * h0) / (h0 + h1))
+            }
             (Some((m, _)), None) | (None, Some((m, _))) => m,
             (None, None) => [0.0; 10],
         }
@@ -143,25 +186,38 @@ impl CameraPath {
 fn parse(sources: &Sources, file: u32) -> Result<CameraPath, Vec<Diagnostic>> {
     let mut errors = Vec::new();
     let parsed = sources.parse::<PathFile>(file, &mut errors, &mut Vec::new());
-    let Some(parsed) = parsed.filter(|_| !errors.iter().any(|e| e.severity == Severity::Error)) else {
+    let Some(parsed) = parsed.filter(|_| !errors.iter().any(|e| e.severity == Severity::Error))
+    else {
         return Err(errors);
     };
     let keys = parsed.keys.0;
     let start = crate::diagnostics::At { file, offset: 0 };
     if keys.is_empty() || keys.len() > MAX_KEYS {
-        errors.push(sources.error(start, format!("a path has 1 to {MAX_KEYS} keys, this one has {}", keys.len())));
+        errors.push(sources.error(
+            start,
+            format!(
+                "a path has 1 to {MAX_KEYS} keys, this one has {}",
+                keys.len()
+            ),
+        ));
     }
     for (i, key) in keys.iter().enumerate() {
         if let Err(message) = key.value.check() {
             errors.push(sources.error(key.at, message));
         } else if i > 0 && keys[i - 1].value.time >= key.value.time {
-            errors.push(sources.error(key.at, "a key's time must be greater than that of the key before"));
+            errors.push(sources.error(
+                key.at,
+                "a key's time must be greater than that of the key before",
+            ));
         }
     }
     if !errors.is_empty() {
         return Err(errors);
     }
-    Ok(CameraPath { repeat: parsed.repeat, keys: keys.into_iter().map(|k| k.value).collect() })
+    Ok(CameraPath {
+        repeat: parsed.repeat,
+        keys: keys.into_iter().map(|k| k.value).collect(),
+    })
 }
 
 /// Writes a path, whole or not at all, after reading its text back.
@@ -180,7 +236,11 @@ pub fn write(path: &CameraPath, file: &Path, overwrite: bool) -> Result<(), Expe
         false => crate::files::write_new(file, text.as_bytes()),
     };
     written.map_err(|e| match e.is_there() {
-        true => FileError::write(file, "it exists; choose another name, or ask to overwrite it").into(),
+        true => FileError::write(
+            file,
+            "it exists; choose another name, or ask to overwrite it",
+        )
+        .into(),
         false => e.into(),
     })
 }
@@ -189,7 +249,11 @@ fn text(path: &CameraPath) -> String {
     let mut out = format!("(\n    repeat: {},\n    keys: [\n", path.repeat);
     for key in &path.keys {
         let camera = crate::experiment::placed_text(&key.camera());
-        out += &format!("        (time: {:?}, {},\n", key.time, camera.trim_start_matches('('));
+        out += &format!(
+            "        (time: {:?}, {},\n",
+            key.time,
+            camera.trim_start_matches('(')
+        );
     }
     out + "    ],\n)\n"
 }
@@ -201,11 +265,16 @@ fn text(path: &CameraPath) -> String {
 pub fn insert(path: &mut CameraPath, key: Key) -> Result<usize, ExperimentError> {
     key.check().map_err(ExperimentError::Request)?;
     if path.keys.len() >= MAX_KEYS {
-        return Err(ExperimentError::Request(format!("a path has at most {MAX_KEYS} keys")));
+        return Err(ExperimentError::Request(format!(
+            "a path has at most {MAX_KEYS} keys"
+        )));
     }
     let i = path.keys.partition_point(|k| k.time < key.time);
     if path.keys.get(i).is_some_and(|k| k.time == key.time) {
-        return Err(ExperimentError::Request(format!("there is a key at {} s: remove it first", key.time)));
+        return Err(ExperimentError::Request(format!(
+            "there is a key at {} s: remove it first",
+            key.time
+        )));
     }
     path.keys.insert(i, key);
     Ok(i)
@@ -221,6 +290,7 @@ pub fn remove(path: &mut CameraPath, index: usize) -> Option<Key> {
 /// # Errors
 /// No such key, or there is one at that time; the path is as it was then.
 pub fn move_key(path: &mut CameraPath, index: usize, time: f64) -> Result<usize, ExperimentError> {
-    let key = remove(path, index).ok_or_else(|| ExperimentError::Request(format!("the path has no key {index}")))?;
+    let key = remove(path, index)
+        .ok_or_else(|| ExperimentError::Request(format!("the path has no key {index}")))?;
     insert(path, Key { time, ..key }).inspect_err(|_| path.keys.insert(index, key))
 }

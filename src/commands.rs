@@ -49,7 +49,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Reads a metric by its key.
-fn metric_of(list: impl Iterator<Item = &'static Metric>) -> impl TypedValueParser<Value = &'static Metric> {
+fn metric_of(
+    list: impl Iterator<Item = &'static Metric>,
+) -> impl TypedValueParser<Value = &'static Metric> {
     let keys = list.map(|m| PossibleValue::new(m.key).help(m.help));
     PossibleValuesParser::new(keys).try_map(|key| Metric::of(&key).ok_or("no such metric"))
 }
@@ -134,8 +136,12 @@ struct DeviceArgs {
 
 /// A span of time from seconds, at least a millisecond.
 fn seconds(text: &str) -> Result<Duration, String> {
-    let span = text.parse().ok().and_then(|s: f64| Duration::try_from_secs_f64(s).ok());
-    span.filter(|s| s.as_millis() > 0).ok_or_else(|| "must be a number of seconds above 0".into())
+    let span = text
+        .parse()
+        .ok()
+        .and_then(|s: f64| Duration::try_from_secs_f64(s).ok());
+    span.filter(|s| s.as_millis() > 0)
+        .ok_or_else(|| "must be a number of seconds above 0".into())
 }
 
 impl DeviceArgs {
@@ -235,13 +241,19 @@ fn open_scene(name: &str) -> Result<crate::scene::Scene, LabError> {
 
 /// A scene as the command line or an experiment names it: a built-in's name, or a file here or in the program's folder.
 fn scene_file(name: &str) -> String {
-    if name.contains('.') { spec_of(&found(&path_of(name))) } else { name.into() }
+    if name.contains('.') {
+        spec_of(&found(&path_of(name)))
+    } else {
+        name.into()
+    }
 }
 
 /// A path as short as it can be said here.
 fn shown(path: &std::path::Path) -> PathBuf {
     let here = std::env::current_dir().ok();
-    here.and_then(|h| path.strip_prefix(h).ok()).unwrap_or(path).to_path_buf()
+    here.and_then(|h| path.strip_prefix(h).ok())
+        .unwrap_or(path)
+        .to_path_buf()
 }
 
 /// A file that the command line names: as it is, or in the program's folder where it is not here.
@@ -249,7 +261,10 @@ fn found(path: &Path) -> PathBuf {
     if path.is_absolute() || path.exists() {
         return path.to_path_buf();
     }
-    let at_home = Workspace::find().ok().map(|home| home.root.join(path)).filter(|p| p.exists());
+    let at_home = Workspace::find()
+        .ok()
+        .map(|home| home.root.join(path))
+        .filter(|p| p.exists());
     at_home.unwrap_or_else(|| path.to_path_buf())
 }
 
@@ -275,11 +290,17 @@ fn writable(path: &Path, endings: &[&str]) -> Result<String, LabError> {
     }
     let try_folder = || {
         std::fs::create_dir_all(folder)?;
-        tempfile::Builder::new().prefix(".conelab-").tempfile_in(folder)
+        tempfile::Builder::new()
+            .prefix(".conelab-")
+            .tempfile_in(folder)
     };
     match try_folder() {
         Ok(_) => Ok(ending),
-        Err(why) => Err(FileError::Write { path: path.into(), why }.into()),
+        Err(why) => Err(FileError::Write {
+            path: path.into(),
+            why,
+        }
+        .into()),
     }
 }
 
@@ -308,7 +329,13 @@ fn scene(args: &SceneArgs) -> Result<(), LabError> {
 
 fn devices() -> Result<(), LabError> {
     for (number, (info, refused)) in list_devices()?.iter().enumerate() {
-        say!("{number}: {} ({}, {}), Vulkan {}", info.name, info.kind, info.driver, info.api);
+        say!(
+            "{number}: {} ({}, {}), Vulkan {}",
+            info.name,
+            info.kind,
+            info.driver,
+            info.api
+        );
         match refused {
             Some(why) => say!("   cannot be used: {why}"),
             None => {
@@ -326,7 +353,10 @@ fn devices() -> Result<(), LabError> {
                 for (name, has) in list {
                     say!("   {} {name}", if has { "yes" } else { "no " });
                 }
-                say!("   {:.1} GiB of device memory", info.heap as f64 / (1u64 << 30) as f64);
+                say!(
+                    "   {:.1} GiB of device memory",
+                    info.heap as f64 / (1u64 << 30) as f64
+                );
             }
         }
     }

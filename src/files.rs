@@ -35,18 +35,30 @@ pub enum FileError {
 
 impl FileError {
     /// Of a file that cannot be written.
-    pub fn write(path: &Path, why: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> FileError {
-        FileError::Write { path: path.into(), why: std::io::Error::other(why) }
+    pub fn write(
+        path: &Path,
+        why: impl Into<Box<dyn std::error::Error + Send + Sync>>,
+    ) -> FileError {
+        FileError::Write {
+            path: path.into(),
+            why: std::io::Error::other(why),
+        }
     }
 
     /// Of a file that cannot be read.
     pub fn read(path: &Path, why: impl ToString) -> FileError {
-        FileError::Read { path: path.into(), why: why.to_string() }
+        FileError::Read {
+            path: path.into(),
+            why: why.to_string(),
+        }
     }
 
     /// Of a file that holds something else.
     pub fn content(path: &Path, why: impl ToString) -> FileError {
-        FileError::Content { path: path.into(), why: why.to_string() }
+        FileError::Content {
+            path: path.into(),
+            why: why.to_string(),
+        }
     }
 
     /// Whether it could not be made because there is one.
@@ -78,9 +90,15 @@ pub fn write_lasting(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 ///
 /// # Errors
 /// As [`write_whole`], and those of the closure.
-fn write_with(path: &Path, write: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>) -> Result<(), FileError> {
+fn write_with(
+    path: &Path,
+    write: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>,
+) -> Result<(), FileError> {
     let kept = temporary(path, write).and_then(|file| file.persist(path).map_err(|e| e.error));
-    kept.map(drop).map_err(|why| FileError::Write { path: path.into(), why })
+    kept.map(drop).map_err(|why| FileError::Write {
+        path: path.into(),
+        why,
+    })
 }
 
 /// Writes `bytes` to a file that must not exist, not even when another program makes it at this moment.
@@ -90,7 +108,10 @@ fn write_with(path: &Path, write: impl FnOnce(&mut std::fs::File) -> std::io::Re
 pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     let written = temporary(path, |file| file.write_all(bytes));
     let kept = written.and_then(|file| file.persist_noclobber(path).map_err(|e| e.error));
-    kept.map(drop).map_err(|why| FileError::Write { path: path.into(), why })
+    kept.map(drop).map_err(|why| FileError::Write {
+        path: path.into(),
+        why,
+    })
 }
 
 /// A finished file under a temporary name in the folder of `path`.
@@ -126,7 +147,8 @@ pub fn write_checked(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 
 /// What a file's name says that it holds: what stands behind the last dot, in small letters; empty without one.
 pub fn ending(path: &Path) -> String {
-    path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase())
+    path.extension()
+        .map_or(String::new(), |e| e.to_string_lossy().to_lowercase())
 }
 
 /// Character that stands for byte 0 of a path that is not UTF-8; the last plane is for private use.
@@ -139,7 +161,9 @@ pub fn spec_of(path: &Path) -> String {
     {
         use std::os::unix::ffi::OsStrExt;
         let chunks = path.as_os_str().as_bytes().utf8_chunks();
-        let stand_in = |byte: &u8| char::from_u32(BYTES + u32::from(*byte)).unwrap_or(char::REPLACEMENT_CHARACTER);
+        let stand_in = |byte: &u8| {
+            char::from_u32(BYTES + u32::from(*byte)).unwrap_or(char::REPLACEMENT_CHARACTER)
+        };
         chunks.fold(String::new(), |mut text, chunk| {
             text.push_str(chunk.valid());
             text.extend(chunk.invalid().iter().map(stand_in));
@@ -155,11 +179,15 @@ pub fn path_of(spec: &str) -> PathBuf {
     #[cfg(unix)]
     {
         use std::os::unix::ffi::OsStringExt;
-        let bytes =
-            spec.chars().flat_map(|c| match u32::from(c).checked_sub(BYTES).and_then(|b| u8::try_from(b).ok()) {
+        let bytes = spec.chars().flat_map(|c| {
+            match u32::from(c)
+                .checked_sub(BYTES)
+                .and_then(|b| u8::try_from(b).ok())
+            {
                 Some(byte) => vec![byte],
                 None => c.encode_utf8(&mut [0; 4]).as_bytes().to_vec(),
-            });
+            }
+        });
         std::ffi::OsString::from_vec(bytes.collect()).into()
     }
     #[cfg(not(unix))]
@@ -203,7 +231,9 @@ pub fn read_input(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
     let length = check_input(path, most)?;
     let mut bytes = Vec::with_capacity(length as usize);
     // It may grow meanwhile, and files of /proc say that they are empty.
-    std::fs::File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    std::fs::File::open(path)?
+        .take(most + 1)
+        .read_to_end(&mut bytes)?;
     match bytes.len() as u64 > most {
         true => Err(unfit(format!("it has more than the {most} bytes allowed"))),
         false => Ok(bytes),
@@ -220,10 +250,15 @@ pub fn check_input(path: &Path, most: u64) -> std::io::Result<u64> {
         return Err(unfit("it is a folder".into()));
     }
     if !found.is_file() {
-        return Err(unfit("it is a pipe, a device or a socket, and no regular file".into()));
+        return Err(unfit(
+            "it is a pipe, a device or a socket, and no regular file".into(),
+        ));
     }
     if found.len() > most {
-        return Err(unfit(format!("{} bytes are more than the {most} allowed", found.len())));
+        return Err(unfit(format!(
+            "{} bytes are more than the {most} allowed",
+            found.len()
+        )));
     }
     Ok(found.len())
 }
@@ -238,8 +273,9 @@ fn unfit(why: String) -> std::io::Error {
 /// As [`read_input`], and text that is not UTF-8.
 pub fn read_input_text(path: &Path, most: u64) -> std::io::Result<String> {
     let bytes = read_input(path, most)?;
-    let mut text = String::from_utf8(bytes)
-        .map_err(|_| std::io::Error::new(std::io::ErrorKind::InvalidData, "it is not UTF-8 text"))?;
+    let mut text = String::from_utf8(bytes).map_err(|_| {
+        std::io::Error::new(std::io::ErrorKind::InvalidData, "it is not UTF-8 text")
+    })?;
     if text.starts_with('\u{feff}') {
         text.drain(..'\u{feff}'.len_utf8());
     }

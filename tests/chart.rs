@@ -18,14 +18,17 @@ const SWEEP: &str = r#"(experiments: ["configs/opened.ron"], warmup: 1, frames: 
     axes: [List(name: "voxel_dim", values: [16, 32]), List(name: "cone_count", values: [7, 9])])"#;
 
 fn number(event: &Value, name: &str) -> f64 {
-    event[name].as_f64().unwrap_or_else(|| panic!("no {name} in {event}"))
+    event[name]
+        .as_f64()
+        .unwrap_or_else(|| panic!("no {name} in {event}"))
 }
 
 /// The error of A's picture, once it was reported after the first `since` events and `is` what was waited for.
 #[track_caller]
 fn error(driver: &mut WindowDriver, since: usize, what: &str, is: impl Fn(f64) -> bool) -> f64 {
-    let measured =
-        driver.wait(since, what, |e| e["event"] == "error" && e["side"] == 0 && e["error"].as_f64().is_some_and(&is));
+    let measured = driver.wait(since, what, |e| {
+        e["event"] == "error" && e["side"] == 0 && e["error"].as_f64().is_some_and(&is)
+    });
     assert!(number(&measured, "gpu_ms") > 0.0, "{measured}");
     number(&measured, "error")
 }
@@ -37,13 +40,29 @@ fn load_point(driver: &mut WindowDriver, id: &Value) -> (usize, Value) {
     let until = Instant::now() + PATIENCE;
     loop {
         let mark = driver.now();
-        let chart = driver.events.iter().rev().find(|e| e["event"] == "dots").unwrap();
-        let dot = chart["dots"].as_array().unwrap().iter().find(|d| d["id"] == *id).unwrap();
-        driver.click_at((dot["at"][0].as_f64().unwrap(), dot["at"][1].as_f64().unwrap()));
+        let chart = driver
+            .events
+            .iter()
+            .rev()
+            .find(|e| e["event"] == "dots")
+            .unwrap();
+        let dot = chart["dots"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|d| d["id"] == *id)
+            .unwrap();
+        driver.click_at((
+            dot["at"][0].as_f64().unwrap(),
+            dot["at"][1].as_f64().unwrap(),
+        ));
         let clicked = Instant::now();
         while clicked.elapsed() < Duration::from_secs(2) {
             driver.now();
-            if let Some(loaded) = driver.events[mark..].iter().find(|e| e["event"] == "loaded point") {
+            if let Some(loaded) = driver.events[mark..]
+                .iter()
+                .find(|e| e["event"] == "loaded point")
+            {
                 return (mark, loaded.clone());
             }
             std::thread::sleep(Duration::from_millis(10));
@@ -64,7 +83,10 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     let mark = driver.now();
     driver.click("", "Chart");
     let measured = driver.event(mark, "error");
-    assert!(measured["error"].is_null() && measured["why"].is_null(), "there is no reference yet: {measured}");
+    assert!(
+        measured["error"].is_null() && measured["why"].is_null(),
+        "there is no reference yet: {measured}"
+    );
 
     // 256 samples take long on a software device: it is stopped, and the blocks of 32 that there are by then are kept.
     let mark = driver.now();
@@ -76,9 +98,14 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     if driver.texts().iter().any(|t| t == "cancel") {
         driver.click("Button", "cancel");
     }
-    let gathered = driver.wait_at_most(Duration::from_secs(300), mark, "gathered", |e| e["event"] == "gathered");
+    let gathered = driver.wait_at_most(Duration::from_secs(300), mark, "gathered", |e| {
+        e["event"] == "gathered"
+    });
     let samples = number(&gathered, "samples");
-    assert!((32.0..=256.0).contains(&samples) && samples % 32.0 == 0.0, "{gathered}");
+    assert!(
+        (32.0..=256.0).contains(&samples) && samples % 32.0 == 0.0,
+        "{gathered}"
+    );
     let own = error(&mut driver, mark, "an error", |_| true);
     assert!(own > 0.0);
 
@@ -88,11 +115,18 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     succeeds(conelab(driver.home.path()).arg("sweep").arg(&file));
     let mark = driver.now();
     driver.click("Button", "refresh");
-    let chart =
-        driver.wait(mark, "dots", |e| e["event"] == "dots" && e["dots"].as_array().is_some_and(|d| !d.is_empty()));
+    let chart = driver.wait(mark, "dots", |e| {
+        e["event"] == "dots" && e["dots"].as_array().is_some_and(|d| !d.is_empty())
+    });
     let dots = chart["dots"].as_array().unwrap();
     assert_eq!(dots.len(), 4, "{chart}");
-    assert_eq!(dots.iter().filter(|d| same(number(d, "error"), own)).count(), 1, "{own} in {chart}");
+    assert_eq!(
+        dots.iter()
+            .filter(|d| same(number(d, "error"), own))
+            .count(),
+        1,
+        "{own} in {chart}"
+    );
     assert!(dots.iter().any(|d| d["front"] == true), "{chart}");
 
     // The dot moves with a slider.
@@ -102,53 +136,100 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     driver.drag((x, y), (x - 42.0, y));
     error(&mut driver, mark, "another error", |e| !same(e, own));
     driver.resting(0);
-    let picture = driver.events.iter().rev().find(|e| e["event"] == "picture").unwrap();
+    let picture = driver
+        .events
+        .iter()
+        .rev()
+        .find(|e| e["event"] == "picture")
+        .unwrap();
     let request = number(picture, "request");
-    let last = driver.wait(mark, "the last error", |e| e["event"] == "error" && e["request"].as_f64() >= Some(request));
+    let last = driver.wait(mark, "the last error", |e| {
+        e["event"] == "error" && e["request"].as_f64() >= Some(request)
+    });
     let slid = number(&last, "error");
     assert!(!same(slid, own), "{slid}");
 
     // A click on a dot loads its experiment: the dot is there, then.
     driver.now();
-    let chart = driver.events.iter().rev().find(|e| e["event"] == "dots").unwrap().clone();
-    let best =
-        chart["dots"].as_array().unwrap().iter().min_by(|a, b| number(a, "error").total_cmp(&number(b, "error")));
+    let chart = driver
+        .events
+        .iter()
+        .rev()
+        .find(|e| e["event"] == "dots")
+        .unwrap()
+        .clone();
+    let best = chart["dots"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .min_by(|a, b| number(a, "error").total_cmp(&number(b, "error")));
     let best = best.unwrap();
-    assert!(!same(number(best, "error"), own) && !same(number(best, "error"), slid), "{chart}");
-    let at = (best["at"][0].as_f64().unwrap(), best["at"][1].as_f64().unwrap());
+    assert!(
+        !same(number(best, "error"), own) && !same(number(best, "error"), slid),
+        "{chart}"
+    );
+    let at = (
+        best["at"][0].as_f64().unwrap(),
+        best["at"][1].as_f64().unwrap(),
+    );
     driver.point_at(at);
-    driver.texts_until("what the dot is", |texts| texts.iter().any(|t| t == "voxel_dim: 16"));
+    driver.texts_until("what the dot is", |texts| {
+        texts.iter().any(|t| t == "voxel_dim: 16")
+    });
     let (mark, loaded) = load_point(&mut driver, &best["id"]);
     assert_eq!(loaded["id"], best["id"], "{loaded}");
     assert_eq!(loaded["params"]["voxel_dim"], "16", "{loaded}");
-    error(&mut driver, mark, "the dot's error", |e| same(e, number(best, "error")));
+    error(&mut driver, mark, "the dot's error", |e| {
+        same(e, number(best, "error"))
+    });
 
     let mark = driver.now();
     driver.click("Button", "undo");
-    error(&mut driver, mark, "the error before the click", |e| same(e, slid));
+    error(&mut driver, mark, "the error before the click", |e| {
+        same(e, slid)
+    });
 
     // The click takes view and size along too, and one undo brings back all of it.
     driver.resting(0);
     let mark = driver.now();
     let (x, y) = centre(driver.place());
     driver.drag((x, y), (x + 60.0, y + 20.0));
-    driver.wait(mark, "no reference of the view", |e| e["event"] == "error" && e["error"].is_null());
+    driver.wait(mark, "no reference of the view", |e| {
+        e["event"] == "error" && e["error"].is_null()
+    });
     driver.resting(0);
     let mark = driver.now();
     driver.click("Button", "as the panel");
-    let large =
-        driver.wait(mark, "a larger picture", |e| e["event"] == "picture" && e["size"][0].as_f64() > Some(160.0));
+    let large = driver.wait(mark, "a larger picture", |e| {
+        e["event"] == "picture" && e["size"][0].as_f64() > Some(160.0)
+    });
     driver.wait(mark, "no reference of it", |e| {
-        e["event"] == "error" && e["error"].is_null() && e["request"].as_f64() >= large["request"].as_f64()
+        e["event"] == "error"
+            && e["error"].is_null()
+            && e["request"].as_f64() >= large["request"].as_f64()
     });
     let before = driver.resting(0);
     std::thread::sleep(Duration::from_millis(300));
     driver.now();
-    let chart = driver.events.iter().rev().find(|e| e["event"] == "dots").unwrap().clone();
+    let chart = driver
+        .events
+        .iter()
+        .rev()
+        .find(|e| e["event"] == "dots")
+        .unwrap()
+        .clone();
     let differs = chart["differs"].as_array().unwrap();
-    assert!(differs.contains(&"camera".into()) && differs.contains(&"size".into()), "{chart}");
+    assert!(
+        differs.contains(&"camera".into()) && differs.contains(&"size".into()),
+        "{chart}"
+    );
     let (mark, _) = load_point(&mut driver, &best["id"]);
-    error(&mut driver, mark, "the dot's error, from its view and at its size", |e| same(e, number(best, "error")));
+    error(
+        &mut driver,
+        mark,
+        "the dot's error, from its view and at its size",
+        |e| same(e, number(best, "error")),
+    );
     let mark = driver.now();
     driver.click("Button", "undo");
     driver.picture(mark, 0, &before);

@@ -10,7 +10,14 @@ use std::process::Command;
 use tempfile::TempDir;
 
 /// Settings that a software device renders in about a second.
-const SMALL: &[&str] = &["--size", "96x64", "--set", "voxel_dim=32", "--set", "shadow_dim=512"];
+const SMALL: &[&str] = &[
+    "--size",
+    "96x64",
+    "--set",
+    "voxel_dim=32",
+    "--set",
+    "shadow_dim=512",
+];
 
 struct Out(TempDir);
 
@@ -30,28 +37,37 @@ impl Out {
 
     fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.0.path()).unwrap();
-        let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
+        let mut names: Vec<String> = entries
+            .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
         names.sort();
         names
     }
 
     /// A command's text without the names of folders.
     fn tidy(&self, text: &str) -> String {
-        text.replace(&format!("{}/", self.0.path().display()), "OUT/").replace(&format!("{}/", root().display()), "")
+        text.replace(&format!("{}/", self.0.path().display()), "OUT/")
+            .replace(&format!("{}/", root().display()), "")
     }
 }
 
 /// `conelab render configs/rays.ron`, small, of a built-in scene.
 fn render(scene: &str, output: &Path) -> Command {
     let mut command = conelab(root());
-    command.args(["render", "configs/rays.ron", "--scene", scene]).args(SMALL).arg("-o").arg(output);
+    command
+        .args(["render", "configs/rays.ron", "--scene", scene])
+        .args(SMALL)
+        .arg("-o")
+        .arg(output);
     command
 }
 
 /// The same with nothing set.
 fn plain(output: &Path) -> Command {
     let mut command = conelab(root());
-    command.args(["render", "configs/rays.ron", "-o"]).arg(output);
+    command
+        .args(["render", "configs/rays.ron", "-o"])
+        .arg(output);
     command
 }
 
@@ -60,7 +76,9 @@ fn read_exr(path: &Path) -> (usize, usize, Vec<[f32; 4]>) {
     let image = read_first_rgba_layer_from_file(
         path,
         |size, _| (size, vec![[0.0; 4]; size.area()]),
-        |(size, texels): &mut (exr::math::Vec2<usize>, Vec<[f32; 4]>), at, (r, g, b, a): (f32, f32, f32, f32)| {
+        |(size, texels): &mut (exr::math::Vec2<usize>, Vec<[f32; 4]>),
+         at,
+         (r, g, b, a): (f32, f32, f32, f32)| {
             texels[at.y() * size.width() + at.x()] = [r, g, b, a];
         },
     )
@@ -78,17 +96,42 @@ fn render_writes_a_png_and_its_measurements() {
             .arg(out.path("box.json"))
             .args(["--warmup", "1", "--frames", "3"]),
     );
-    assert!(said.contains("GPU ms") && said.contains("shading") && said.contains("memory of the graph"), "{said}");
-    assert!(out.tidy(&said).ends_with("wrote OUT/box.png\nwrote OUT/box.json\n"), "{said}");
+    assert!(
+        said.contains("GPU ms") && said.contains("shading") && said.contains("memory of the graph"),
+        "{said}"
+    );
+    assert!(
+        out.tidy(&said)
+            .ends_with("wrote OUT/box.png\nwrote OUT/box.json\n"),
+        "{said}"
+    );
     assert_eq!(out.names(), ["box.json", "box.png"]);
 
     let picture = image::open(out.path("box.png")).unwrap();
-    assert_eq!((picture.width(), picture.height(), picture.color()), (96, 64, image::ColorType::Rgb8));
-    let mean = picture.to_rgb8().as_raw().iter().map(|v| f64::from(*v)).sum::<f64>() / (96.0 * 64.0 * 3.0);
-    assert!((5.0..200.0).contains(&mean), "mean brightness {mean} of 255");
+    assert_eq!(
+        (picture.width(), picture.height(), picture.color()),
+        (96, 64, image::ColorType::Rgb8)
+    );
+    let mean = picture
+        .to_rgb8()
+        .as_raw()
+        .iter()
+        .map(|v| f64::from(*v))
+        .sum::<f64>()
+        / (96.0 * 64.0 * 3.0);
+    assert!(
+        (5.0..200.0).contains(&mean),
+        "mean brightness {mean} of 255"
+    );
 
-    let stats: serde_json::Value = serde_json::from_slice(&std::fs::read(out.path("box.json")).unwrap()).unwrap();
-    let fields: Vec<&str> = stats.as_object().unwrap().keys().map(String::as_str).collect();
+    let stats: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(out.path("box.json")).unwrap()).unwrap();
+    let fields: Vec<&str> = stats
+        .as_object()
+        .unwrap()
+        .keys()
+        .map(String::as_str)
+        .collect();
     let documented = [
         "bytes",
         "cpu_ms",
@@ -119,19 +162,36 @@ fn render_writes_a_png_and_its_measurements() {
     assert_eq!(stats["size"], serde_json::json!([96, 64]));
     assert_eq!(stats["warmup"], 1);
     assert_eq!(stats["warnings"], serde_json::json!([]));
-    assert!(["cpu", "integrated", "discrete", "virtual"].iter().any(|k| stats["device"]["kind"] == *k));
-    assert!(["name", "driver", "api"].iter().all(|f| stats["device"][f].as_str().is_some_and(|s| !s.is_empty())));
+    assert!(
+        ["cpu", "integrated", "discrete", "virtual"]
+            .iter()
+            .any(|k| stats["device"]["kind"] == *k)
+    );
+    assert!(
+        ["name", "driver", "api"]
+            .iter()
+            .all(|f| stats["device"][f].as_str().is_some_and(|s| !s.is_empty()))
+    );
     // Every parameter is there, in its own JSON type.
     assert_eq!(stats["params"]["voxel_dim"], 32);
     assert_eq!(stats["params"]["volume_ahead"], 0.25);
     assert_eq!(stats["params"]["voxelizer"], "auto");
-    assert_eq!(stats["params"]["volume_size"], serde_json::json!([32.0, 32.0, 32.0]));
+    assert_eq!(
+        stats["params"]["volume_size"],
+        serde_json::json!([32.0, 32.0, 32.0])
+    );
     for pass in stats["passes"].as_array().unwrap() {
         assert_eq!(pass["frames"], 3, "{pass}");
-        let [min, median, p95] = ["min", "median", "p95"].map(|f| pass["gpu_ms"][f].as_f64().unwrap());
+        let [min, median, p95] =
+            ["min", "median", "p95"].map(|f| pass["gpu_ms"][f].as_f64().unwrap());
         assert!(0.0 <= min && min <= median && median <= p95, "{pass}");
     }
-    let sum: u64 = stats["bytes"].as_object().unwrap().values().map(|b| b.as_u64().unwrap()).sum();
+    let sum: u64 = stats["bytes"]
+        .as_object()
+        .unwrap()
+        .values()
+        .map(|b| b.as_u64().unwrap())
+        .sum();
     assert_eq!(stats["total_bytes"], sum);
     assert!(stats["bytes"]["voxelBricks"].as_u64().unwrap() >= 2 * 32 * 32 * 16);
     assert!(stats["triangles"].as_u64().unwrap() > 0 && stats["scene_bytes"].as_u64().unwrap() > 0);
@@ -140,7 +200,10 @@ fn render_writes_a_png_and_its_measurements() {
 #[test]
 fn the_same_command_gives_the_same_bytes() {
     let voxelizers = ["raster", "tessellated", "compute"];
-    for (scene, voxelizer) in voxelizers.iter().flat_map(|v| [("cornell", v), ("triangles", v)]) {
+    for (scene, voxelizer) in voxelizers
+        .iter()
+        .flat_map(|v| [("cornell", v), ("triangles", v)])
+    {
         let out = Out::new();
         let one = |name: &str, more: &[&str]| {
             let set = ["--frames", "6", "--set", &format!("voxelizer={voxelizer}")];
@@ -150,11 +213,23 @@ fn the_same_command_gives_the_same_bytes() {
         let first = one("a.exr", &[]);
         let (width, height, texels) = read_exr(&out.path("a.exr"));
         assert_eq!((width, height), (96, 64));
-        assert!(texels.iter().flatten().all(|v| v.is_finite()), "{scene}, {voxelizer}");
-        assert!(texels.iter().any(|t| t[0] > 0.05), "{scene}, {voxelizer}: black");
-        assert!(one("b.exr", &[]) == first, "{scene}, {voxelizer}: two runs differ");
+        assert!(
+            texels.iter().flatten().all(|v| v.is_finite()),
+            "{scene}, {voxelizer}"
+        );
+        assert!(
+            texels.iter().any(|t| t[0] > 0.05),
+            "{scene}, {voxelizer}: black"
+        );
+        assert!(
+            one("b.exr", &[]) == first,
+            "{scene}, {voxelizer}: two runs differ"
+        );
         // Sums of integers do not depend on the order of the triangles.
-        assert!(one("c.exr", &["--shuffle", "7"]) == first, "{scene}, {voxelizer}: the order of triangles shows");
+        assert!(
+            one("c.exr", &["--shuffle", "7"]) == first,
+            "{scene}, {voxelizer}: the order of triangles shows"
+        );
     }
 }
 
@@ -165,13 +240,21 @@ fn a_picture_is_of_settled_light() {
     let path = |name: &str| home.path().join(name);
     let mean = |name: &str| {
         let (_, _, texels) = read_exr(&path(name));
-        texels.iter().map(|t| f64::from(t[0] + t[1] + t[2])).sum::<f64>() / texels.len() as f64
+        texels
+            .iter()
+            .map(|t| f64::from(t[0] + t[1] + t[2]))
+            .sum::<f64>()
+            / texels.len() as f64
     };
     succeeds(&mut render("cornell", &path("settled.exr")));
     succeeds(render("cornell", &path("first.exr")).args(["--frames", "1"]));
     succeeds(render("cornell", &path("late.exr")).args(["--frames", "100"]));
     let (settled, first, late) = (mean("settled.exr"), mean("first.exr"), mean("late.exr"));
-    println!("first frame {:.4}, settled {:.4} of the light after 100 frames", first / late, settled / late);
+    println!(
+        "first frame {:.4}, settled {:.4} of the light after 100 frames",
+        first / late,
+        settled / late
+    );
     assert!(first < 0.97 * late && (settled / late - 1.0).abs() < 0.01);
 }
 
@@ -179,7 +262,9 @@ fn a_picture_is_of_settled_light() {
 #[test]
 fn what_splitting_would_take_is_told_before_it_is_done() {
     let out = Out::new();
-    let said = fails(render("plain", &out.0.path().join("a.png")).args(["--set", "voxelizer=tessellated"]));
+    let said = fails(
+        render("plain", &out.0.path().join("a.png")).args(["--set", "voxelizer=tessellated"]),
+    );
     assert!(said.contains("MB of vertices or more"), "{said}");
 }
 
@@ -188,7 +273,10 @@ fn resources_come_as_they_are() {
     let out = Out::new();
     // Slices of a volume lie below one another: mip 2 of 32^3 is 8 wide and 8 * 8 high.
     let mut mip = conelab(root());
-    mip.args(["render", "configs/cones.ron", "--scene", "cornell"]).args(SMALL).arg("-o").arg(out.path("mip.exr"));
+    mip.args(["render", "configs/cones.ron", "--scene", "cornell"])
+        .args(SMALL)
+        .arg("-o")
+        .arg(out.path("mip.exr"));
     succeeds(mip.args(["--resource", "voxelRadiance:2", "--set", "mips=isotropic"]));
     let (width, height, texels) = read_exr(&out.path("mip.exr"));
     assert_eq!((width, height), (8, 64));
@@ -220,7 +308,8 @@ fn wrong_arguments_are_told_and_leave_nothing() {
     assert_snapshot!(error_of(&["--scene", "missing/model.gltf"]), @"error: cannot read missing/model.gltf: No such file or directory (os error 2). Check the path and its permissions");
     assert_snapshot!(error_of(&["--camera", "side", "--scene", "cornell"]), @"error: scene 'cornell' has no camera 'side' (known: default)");
     assert_snapshot!(error_of(&["--scene", "cornell", "--camera", "(eye: (0, 0, 1), target: (0, 0, 0))"]), @"error: --camera: 1:35: Unexpected missing field named `fov_y` in `PlacedCamera`; expected (eye: (x, y, z), target: (x, y, z), fov_y: degrees)");
-    let resource = |name: &str| out.tidy(&fails(render("cornell", &png).args(["--resource", name])));
+    let resource =
+        |name: &str| out.tidy(&fails(render("cornell", &png).args(["--resource", name])));
     assert_snapshot!(resource("voxelRadience"), @"error: no texture 'voxelRadience' (did you mean 'voxelRadiance'?)");
     assert_snapshot!(resource("voxelRadiance:9"), @"error: 'voxelRadiance' has 1 mips and 1 layers; there is no mip 9, layer 0");
     assert_snapshot!(resource("voxelRadiance:x"), @"error: --resource voxelRadiance:x: 'x' is no mip");
@@ -233,7 +322,11 @@ fn wrong_arguments_are_told_and_leave_nothing() {
 fn files_that_are_missing_or_broken() {
     let out = Out::new();
     let png = out.path("x.png");
-    let experiment = |path: &Path| out.tidy(&fails(conelab(root()).arg("render").arg(path).arg("-o").arg(&png)));
+    let experiment = |path: &Path| {
+        out.tidy(&fails(
+            conelab(root()).arg("render").arg(path).arg("-o").arg(&png),
+        ))
+    };
     assert_snapshot!(experiment(&out.path("missing.ron")), @r"
     OUT/missing.ron: error: cannot read it: No such file or directory (os error 2)
         = help: give the path of an experiment, for example configs/rays.ron
@@ -253,7 +346,9 @@ fn files_that_are_missing_or_broken() {
     assert_snapshot!(scene("broken.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 7\n"), @"error: cannot load the model OUT/broken.obj: line 3: a face names vertex 7 of 2. Export it again");
     assert_snapshot!(scene("picture.bmp", b"BM"), @"error: no scene 'OUT/picture.bmp': the file's extension must be .ron, .obj, .gltf, .glb or .fbx; convert other formats to glTF");
     let mut home = conelab(root());
-    home.env("CONELAB_HOME", out.0.path()).args(["render", "configs/rays.ron", "-o"]).arg(&png);
+    home.env("CONELAB_HOME", out.0.path())
+        .args(["render", "configs/rays.ron", "-o"])
+        .arg(&png);
     assert_snapshot!(out.tidy(&fails(&mut home)).replace(out.0.path().to_str().unwrap(), "OUT"), @"error: CONELAB_HOME is 'OUT', which has no passes and shaders folders");
     assert!(!png.exists());
 }
@@ -271,12 +366,22 @@ fn outputs_that_cannot_be_written() {
     let json = file.join("x.json");
     assert_snapshot!(out.tidy(&fails(render("cornell", &out.path("x.png")).arg("--json").arg(json))), @"error: cannot write 'OUT/file/x.json': 'OUT/file' is no folder");
     assert_eq!(out.names(), ["file", "folder.png"]);
-    assert_eq!(std::fs::read_dir(out.path("folder.png")).unwrap().count(), 0);
+    assert_eq!(
+        std::fs::read_dir(out.path("folder.png")).unwrap().count(),
+        0
+    );
 }
 
 #[test]
 fn what_is_wrong_is_told_before_what_is_missing() {
-    let without = |more: &[&str]| fails(conelab(root()).args(["render", "configs/rays.ron"]).args(SMALL).args(more));
+    let without = |more: &[&str]| {
+        fails(
+            conelab(root())
+                .args(["render", "configs/rays.ron"])
+                .args(SMALL)
+                .args(more),
+        )
+    };
     assert_snapshot!(without(&["--scene", "cornell", "--set", "exposrue=1"]), @"--set exposrue=1: error: no parameter 'exposrue' (did you mean 'exposure'?)");
     assert_snapshot!(without(&["--scene", "gone.obj"]), @"error: cannot read gone.obj: No such file or directory (os error 2). Check the path and its permissions");
     assert_snapshot!(without(&["--scene", "cornell"]), @"error: nothing to write: name the picture with --output, for example -o picture.png");
@@ -285,29 +390,46 @@ fn what_is_wrong_is_told_before_what_is_missing() {
 #[test]
 fn standard_output_is_json_alone_or_an_error_when_full() {
     let graph = ["graph", "passes/rays.ron", "--size", "64x48", "--json", "-"];
-    let outline: serde_json::Value = serde_json::from_str(&succeeds(conelab(root()).args(graph))).unwrap();
-    assert_eq!((&outline["schema"], &outline["graph"]), (&"conelab-graph-1".into(), &"rays".into()));
+    let outline: serde_json::Value =
+        serde_json::from_str(&succeeds(conelab(root()).args(graph))).unwrap();
+    assert_eq!(
+        (&outline["schema"], &outline["graph"]),
+        (&"conelab-graph-1".into(), &"rays".into())
+    );
     assert_eq!(outline["params"]["voxel_dim"], 160);
     let list = |name: &str| outline[name].as_array().unwrap().clone();
-    let picture = list("textures").into_iter().find(|t| t["name"] == "display").unwrap();
-    assert_eq!((&picture["extent"], &picture["bytes"]), (&serde_json::json!([64, 48, 1]), &(64 * 48 * 4).into()));
-    assert!(
-        list("passes")
-            .iter()
-            .any(|p| p["name"] == "display" && p["writes"] == serde_json::json!(["display", "pictureErrors"]))
+    let picture = list("textures")
+        .into_iter()
+        .find(|t| t["name"] == "display")
+        .unwrap();
+    assert_eq!(
+        (&picture["extent"], &picture["bytes"]),
+        (&serde_json::json!([64, 48, 1]), &(64 * 48 * 4).into())
     );
+    assert!(list("passes").iter().any(|p| p["name"] == "display"
+        && p["writes"] == serde_json::json!(["display", "pictureErrors"])));
 
     let out = Out::new();
-    let stats = succeeds(render("cornell", &out.path("x.png")).args(["--frames", "1", "--json", "-"]));
-    assert_eq!(serde_json::from_str::<serde_json::Value>(&stats).unwrap()["scene"], "cornell");
+    let stats =
+        succeeds(render("cornell", &out.path("x.png")).args(["--frames", "1", "--json", "-"]));
+    assert_eq!(
+        serde_json::from_str::<serde_json::Value>(&stats).unwrap()["scene"],
+        "cornell"
+    );
     for command in [&["scene", "cornell"][..], &graph, &["completions", "bash"]] {
         let full = std::fs::File::create("/dev/full").unwrap();
         let told = fails(conelab(root()).args(command).stdout(full));
-        assert_eq!(told, "error: cannot write to standard output: No space left on device (os error 28)\n");
+        assert_eq!(
+            told,
+            "error: cannot write to standard output: No space left on device (os error 28)\n"
+        );
     }
     for shell in ["bash", "zsh", "fish"] {
         let script = succeeds(conelab(root()).args(["completions", shell]));
-        assert!(script.contains("conelab") && script.contains("stability"), "{shell}: {script}");
+        assert!(
+            script.contains("conelab") && script.contains("stability"),
+            "{shell}: {script}"
+        );
     }
 }
 
@@ -323,8 +445,16 @@ fn files_are_for_whom_the_umask_says() {
             env!("CARGO_BIN_EXE_conelab"),
             file.display()
         );
-        let done = std::process::Command::new("sh").args(["-c", &graph]).current_dir(root()).output().unwrap();
-        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let done = std::process::Command::new("sh")
+            .args(["-c", &graph])
+            .current_dir(root())
+            .output()
+            .unwrap();
+        assert!(
+            done.status.success(),
+            "{}",
+            String::from_utf8_lossy(&done.stderr)
+        );
         let found = std::fs::metadata(&file).unwrap().permissions().mode() & 0o777;
         assert_eq!(found, mode, "umask {mask}: {found:o}");
     }
@@ -333,16 +463,42 @@ fn files_are_for_whom_the_umask_says() {
 #[test]
 fn files_of_the_program_are_found_from_anywhere() {
     let out = Out::new();
-    let from_elsewhere = |args: &[&str]| succeeds(conelab(root()).current_dir(out.0.path()).args(args));
-    assert!(from_elsewhere(&["check", "configs/rays.ron", "passes/rays.ron"]).starts_with("checked 2 files, 0 errors"));
+    let from_elsewhere =
+        |args: &[&str]| succeeds(conelab(root()).current_dir(out.0.path()).args(args));
+    assert!(
+        from_elsewhere(&["check", "configs/rays.ron", "passes/rays.ron"])
+            .starts_with("checked 2 files, 0 errors")
+    );
     assert!(from_elsewhere(&["graph", "passes/rays.ron"]).starts_with("graph rays: "));
     assert!(from_elsewhere(&["graph", "configs/thesis.ron"]).starts_with("graph thesis: "));
     let mut render = conelab(root());
-    render.current_dir(out.0.path()).args(["render", "configs/rays.ron", "--scene", "cornell", "-o", "x.exr"]);
-    let output = render.args(SMALL).args(["--frames", "1", "--set", "view=direct"]).output().unwrap();
-    let (said, told) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
-    assert!(said.ends_with("wrote x.exr ('radiance', linear)\n"), "{said}");
-    assert!(told.contains("warning: 'radiance' is the whole light; --resource direct writes 'direct' alone"), "{told}");
+    render.current_dir(out.0.path()).args([
+        "render",
+        "configs/rays.ron",
+        "--scene",
+        "cornell",
+        "-o",
+        "x.exr",
+    ]);
+    let output = render
+        .args(SMALL)
+        .args(["--frames", "1", "--set", "view=direct"])
+        .output()
+        .unwrap();
+    let (said, told) = (
+        String::from_utf8(output.stdout).unwrap(),
+        String::from_utf8(output.stderr).unwrap(),
+    );
+    assert!(
+        said.ends_with("wrote x.exr ('radiance', linear)\n"),
+        "{said}"
+    );
+    assert!(
+        told.contains(
+            "warning: 'radiance' is the whole light; --resource direct writes 'direct' alone"
+        ),
+        "{told}"
+    );
 }
 
 #[test]
@@ -361,13 +517,26 @@ fn a_failure_keeps_the_old_picture() {
 fn voxels_of_512_across_fit_into_700_mib() {
     let set = |name: &str, value: &str| ["--set".to_owned(), format!("{name}={value}")];
     let threads = ["voxelizer", "shadow_map", "gbuffer"].map(|name| set(name, "compute"));
-    let sizes = [("voxel_dim", "512"), ("voxel_capacity", "1700000"), ("fragment_capacity", "3000000")];
+    let sizes = [
+        ("voxel_dim", "512"),
+        ("voxel_capacity", "1700000"),
+        ("fragment_capacity", "3000000"),
+    ];
     let sizes = sizes.map(|(name, value)| set(name, value));
-    let args = ["graph", "configs/rays.ron", "--size", "1920x1080", "--barriers"];
+    let args = [
+        "graph",
+        "configs/rays.ron",
+        "--size",
+        "1920x1080",
+        "--barriers",
+    ];
     let settings = threads.iter().chain(&sizes).flatten();
     let text = succeeds(conelab(root()).args(args).args(settings));
     let mib = |what: &str| -> f64 {
-        let line = text.lines().find(|l| l.starts_with(what)).unwrap_or_else(|| panic!("no '{what}' in\n{text}"));
+        let line = text
+            .lines()
+            .find(|l| l.starts_with(what))
+            .unwrap_or_else(|| panic!("no '{what}' in\n{text}"));
         line.split_whitespace().last().unwrap().parse().unwrap()
     };
     assert!((500.0..700.0).contains(&mib("total ")), "{text}");
@@ -378,32 +547,84 @@ fn voxels_of_512_across_fit_into_700_mib() {
 fn graph_explains_itself() {
     let graph = |args: &[&str]| succeeds(conelab(root()).arg("graph").args(args));
     // A screen of 60 lines.
-    for (name, stages) in [("rays", 8), ("cones", 9), ("thesis", 7), ("warps", 9), ("temporal", 9)] {
+    for (name, stages) in [
+        ("rays", 8),
+        ("cones", 9),
+        ("thesis", 7),
+        ("warps", 9),
+        ("temporal", 9),
+    ] {
         let text = graph(&[&format!("passes/{name}.ron")]);
-        assert!(text.starts_with(&format!("graph {name}: ")) && text.lines().count() <= 60, "{text}");
+        assert!(
+            text.starts_with(&format!("graph {name}: ")) && text.lines().count() <= 60,
+            "{text}"
+        );
         let rows = || text.lines().skip(2).take_while(|l| !l.is_empty());
-        assert!(rows().filter(|l| !l.starts_with(' ')).count() == stages, "{text}");
+        assert!(
+            rows().filter(|l| !l.starts_with(' ')).count() == stages,
+            "{text}"
+        );
         assert!(rows().all(|l| l.contains(" -> ")), "{text}");
     }
-    let wide = graph(&["passes/cones.ron", "--set", "opacity=layers", "--set", "diffuse_aperture=0"]);
-    let row = wide.lines().find(|l| l.contains("inject/clear.comp")).unwrap();
-    assert!(row.ends_with("  volume voxelBlocks voxelBricks -> voxelRadiance"), "{row}");
-    assert!(wide.contains("opacity modules/opacity/layers.glsl") && wide.contains("diffuse_aperture 6 deg"), "{wide}");
+    let wide = graph(&[
+        "passes/cones.ron",
+        "--set",
+        "opacity=layers",
+        "--set",
+        "diffuse_aperture=0",
+    ]);
+    let row = wide
+        .lines()
+        .find(|l| l.contains("inject/clear.comp"))
+        .unwrap();
+    assert!(
+        row.ends_with("  volume voxelBlocks voxelBricks -> voxelRadiance"),
+        "{row}"
+    );
+    assert!(
+        wide.contains("opacity modules/opacity/layers.glsl")
+            && wide.contains("diffuse_aperture 6 deg"),
+        "{wide}"
+    );
     let layers = graph(&["passes/cones.ron", "--set", "mips=isotropic"]);
-    assert!(layers.contains("filter/isotropic.comp") && !layers.contains("filter/anisotropic.comp"), "{layers}");
+    assert!(
+        layers.contains("filter/isotropic.comp") && !layers.contains("filter/anisotropic.comp"),
+        "{layers}"
+    );
 
     let text = graph(&["passes/rays.ron", "--size", "64x48", "--barriers"]);
     assert!(text.starts_with("graph rays: "), "{text}");
-    for part in ["\norder\n", "  shading\n", "reads surfels", "\nresources ", "voxelColor", "\nleft out\n"] {
+    for part in [
+        "\norder\n",
+        "  shading\n",
+        "reads surfels",
+        "\nresources ",
+        "voxelColor",
+        "\nleft out\n",
+    ] {
         assert!(text.contains(part), "'{part}' is not in\n{text}");
     }
-    assert!(text.contains("voxelize tessellated: tessellates == 1 is false"), "{text}");
-    let other = graph(&["configs/rays.ron", "--set", "voxelizer=tessellated", "--barriers"]);
-    assert!(!other.contains("voxelize tessellated: tessellates == 1 is false"), "{other}");
+    assert!(
+        text.contains("voxelize tessellated: tessellates == 1 is false"),
+        "{text}"
+    );
+    let other = graph(&[
+        "configs/rays.ron",
+        "--set",
+        "voxelizer=tessellated",
+        "--barriers",
+    ]);
+    assert!(
+        !other.contains("voxelize tessellated: tessellates == 1 is false"),
+        "{other}"
+    );
 
     let dot = graph(&["passes/rays.ron", "--dot"]);
     assert!(dot.starts_with("digraph ") && dot.ends_with("}\n"), "{dot}");
-    assert!(dot.contains("\"pass inject\" -> \"sideRadiance\";"), "{dot}");
+    assert!(
+        dot.contains("\"pass inject\" -> \"sideRadiance\";"),
+        "{dot}"
+    );
 
     let params = graph(&["passes/rays.ron", "--params"]);
     assert!(
@@ -411,12 +632,24 @@ fn graph_explains_itself() {
         "{params}"
     );
     assert!(
-        params.contains("  voxelizer = auto  (one of auto, compute, raster, tessellated; plain: raster)\n"),
+        params.contains(
+            "  voxelizer = auto  (one of auto, compute, raster, tessellated; plain: raster)\n"
+        ),
         "{params}"
     );
-    let set = ["passes/warps.ron", "--params", "--set", "warp=spline", "--set", "warp_alpha=0.5"];
+    let set = [
+        "passes/warps.ron",
+        "--params",
+        "--set",
+        "warp=spline",
+        "--set",
+        "warp_alpha=0.5",
+    ];
     let values = graph(&set);
-    assert!(values.contains("\n  warp_slope = 1.25  (select("), "{values}");
+    assert!(
+        values.contains("\n  warp_slope = 1.25  (select("),
+        "{values}"
+    );
 
     let out = Out::new();
     assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "rasy.ron"]))), @r"
@@ -453,9 +686,15 @@ fn check_finds_nothing_here_and_every_mistake_in_a_broken_copy() {
         assert!(text.contains(old), "{name}");
         std::fs::write(out.path(name), text.replacen(old, new, 1)).unwrap();
     };
-    edit("configs/thesis.ron", "params: {}", "params: { \"voxel_dim\": 8 }");
+    edit(
+        "configs/thesis.ron",
+        "params: {}",
+        "params: { \"voxel_dim\": 8 }",
+    );
     let mut command = files();
-    command.env("CONELAB_HOME", out.0.path()).current_dir(out.0.path());
+    command
+        .env("CONELAB_HOME", out.0.path())
+        .current_dir(out.0.path());
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     assert_snapshot!(out.tidy(&String::from_utf8_lossy(&output.stdout)), @r#"
@@ -467,7 +706,10 @@ fn check_finds_nothing_here_and_every_mistake_in_a_broken_copy() {
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(said.contains("shaders/surfels/trace.glsl:") && said.contains("vec5"), "{said}");
+    assert!(
+        said.contains("shaders/surfels/trace.glsl:") && said.contains("vec5"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -478,7 +720,10 @@ fn check_of_everything_succeeds() {
 #[test]
 fn devices_are_listed() {
     let text = succeeds(conelab(root()).arg("devices"));
-    assert!(text.contains(&device()) && text.contains("Vulkan 1.") && text.contains("yes tessellation"), "{text}");
+    assert!(
+        text.contains(&device()) && text.contains("Vulkan 1.") && text.contains("yes tessellation"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -489,6 +734,16 @@ fn a_scene_is_described_as_json() {
     let out = succeeds(conelab(home.path()).args(["scene", "one.obj", "--json", "-"]));
     let scene: serde_json::Value = serde_json::from_str(&out).unwrap();
     assert_eq!(scene["triangles"], 1);
-    assert_eq!(scene["bounds"], serde_json::json!([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0]]));
-    assert!(scene["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains("nowhere")), "{out}");
+    assert_eq!(
+        scene["bounds"],
+        serde_json::json!([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0]])
+    );
+    assert!(
+        scene["warnings"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .any(|w| w.as_str().unwrap().contains("nowhere")),
+        "{out}"
+    );
 }

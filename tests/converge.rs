@@ -37,7 +37,10 @@ const OPTIONS: [(&str, &[&str]); 8] = [
 
 fn with(mut experiment: Experiment, set: &[(&str, &str)]) -> Experiment {
     for (name, value) in set {
-        let name = Loc { value: (*name).to_string(), at: At::default() };
+        let name = Loc {
+            value: (*name).to_string(),
+            at: At::default(),
+        };
         experiment.params.push((name, (*value).to_string()));
     }
     experiment
@@ -45,12 +48,20 @@ fn with(mut experiment: Experiment, set: &[(&str, &str)]) -> Experiment {
 
 /// The shipped presets, small.
 fn presets() -> Vec<Experiment> {
-    let files = std::fs::read_dir(root().join("configs")).unwrap().map(|f| f.unwrap().path());
-    let mut files: Vec<_> = files.filter(|f| f.extension().is_some_and(|e| e == "ron")).collect();
+    let files = std::fs::read_dir(root().join("configs"))
+        .unwrap()
+        .map(|f| f.unwrap().path());
+    let mut files: Vec<_> = files
+        .filter(|f| f.extension().is_some_and(|e| e == "ron"))
+        .collect();
     files.sort();
     let small = |file: &std::path::PathBuf| {
         let experiment = Experiment::read(file).unwrap();
-        let experiment = Experiment { scene: "cornell".into(), size: (32, 24), ..experiment };
+        let experiment = Experiment {
+            scene: "cornell".into(),
+            size: (32, 24),
+            ..experiment
+        };
         let mut experiment = with(experiment, &[("voxel_dim", "16"), ("shadow_dim", "256")]);
         experiment.name = file.file_stem().unwrap().to_string_lossy().into_owned();
         experiment
@@ -61,7 +72,10 @@ fn presets() -> Vec<Experiment> {
 /// Each preset alone, and the graphs under the options that they have; the graph with a temporal filter under those that
 /// pass through it. `warps.ron` gathers with the passes of `cones.ron`.
 fn cases() -> Vec<Experiment> {
-    let home = Workspace { root: root().to_path_buf(), cache: None };
+    let home = Workspace {
+        root: root().to_path_buf(),
+        cache: None,
+    };
     let (mut cases, mut graphs) = (presets(), Vec::new());
     for preset in presets() {
         if preset.graph == "warps.ron" || graphs.contains(&preset.graph) {
@@ -97,13 +111,23 @@ fn session(lab: &Lab, experiment: &Experiment) -> Session {
 }
 
 fn light(session: &mut Session) -> Vec<[f32; 4]> {
-    let name = session.graph.hdr.clone().or(session.graph.output.clone()).unwrap();
+    let name = session
+        .graph
+        .hdr
+        .clone()
+        .or(session.graph.output.clone())
+        .unwrap();
     floats(session, &name, 0)
 }
 
 /// Mean absolute difference, relative to the mean.
 fn distance(a: &[[f32; 4]], b: &[[f32; 4]]) -> f64 {
-    let channels = |list: &[[f32; 4]]| list.iter().flat_map(|t| t[..3].to_vec()).map(f64::from).collect::<Vec<_>>();
+    let channels = |list: &[[f32; 4]]| {
+        list.iter()
+            .flat_map(|t| t[..3].to_vec())
+            .map(f64::from)
+            .collect::<Vec<_>>()
+    };
     let (a, b) = (channels(a), channels(b));
     a.iter().zip(&b).map(|(a, b)| (a - b).abs()).sum::<f64>() / b.iter().sum::<f64>()
 }
@@ -121,13 +145,20 @@ fn three_times_as_many_frames_change_nothing_that_counts() {
         // Where no pass gathers over frames, none may follow the first.
         session.run(2 * frames).unwrap();
         let far = distance(&converged, &light(&mut session));
-        let line = format!("{}: {frames} frames, {far:.1e} from three times as many", case.name);
+        let line = format!(
+            "{}: {frames} frames, {far:.1e} from three times as many",
+            case.name
+        );
         println!("{line}, {:.1} s", begun.elapsed().as_secs_f64());
         if far > BOUND {
             wrong.push(line);
         }
     }
-    assert!(wrong.is_empty(), "more than {BOUND} from converged:\n{}", wrong.join("\n"));
+    assert!(
+        wrong.is_empty(),
+        "more than {BOUND} from converged:\n{}",
+        wrong.join("\n")
+    );
     assert_clean(&lab);
 }
 
@@ -137,14 +168,20 @@ fn converged(engine: &Engine, number: u64, sides: usize) -> Vec<PictureReport> {
     let mut last: Vec<Option<PictureReport>> = vec![None; sides];
     loop {
         let left = until.saturating_duration_since(Instant::now());
-        match engine.reports.recv_timeout(left).expect("converged pictures") {
+        match engine
+            .reports
+            .recv_timeout(left)
+            .expect("converged pictures")
+        {
             Report::Picture(p) if !p.preview && p.request >= number => {
                 let side = p.side;
                 last[side] = Some(p);
             }
             Report::Restarted => last = vec![None; sides],
             Report::Failed { diagnostics, .. } => panic!("{diagnostics:?}"),
-            Report::DeviceFailed(why) | Report::LoadFailed(why) | Report::Trouble(why) => panic!("{why}"),
+            Report::DeviceFailed(why) | Report::LoadFailed(why) | Report::Trouble(why) => {
+                panic!("{why}")
+            }
             _ => {}
         }
         if last.iter().all(|p| p.as_ref().is_some_and(|p| p.left == 0)) {
@@ -155,19 +192,50 @@ fn converged(engine: &Engine, number: u64, sides: usize) -> Vec<PictureReport> {
 
 #[test]
 fn equal_settings_of_a_and_b_differ_in_no_bit() {
-    let options = GpuOptions { device: Some(common::device()), validation: true, ..GpuOptions::default() };
-    let home = Workspace { root: root().to_path_buf(), cache: Some(common::cache()) };
+    let options = GpuOptions {
+        device: Some(common::device()),
+        validation: true,
+        ..GpuOptions::default()
+    };
+    let home = Workspace {
+        root: root().to_path_buf(),
+        cache: Some(common::cache()),
+    };
     let engine = Engine::start(home, options, Arc::new(|| {}));
     let mut lit = LightState::of(&scene("cornell"));
     lit.lights[0].color *= 0.5;
     let mut number = 0;
-    for case in presets().into_iter().chain(["cones", "cone_rays", "lobe_rays"].map(|trace| {
-        let small = [("voxel_dim", "16"), ("shadow_dim", "256"), ("exact_rays", "4"), ("trace", trace)];
-        let name = format!("trace {trace}");
-        Experiment { name, ..with(Experiment { params: Vec::new(), ..presets().remove(0) }, &small) }
-    })) {
-        let params = case.params.iter().map(|(name, value)| (name.value.clone(), value.clone())).collect();
-        let side = SideRequest { graph: case.graph.clone(), params };
+    for case in presets()
+        .into_iter()
+        .chain(["cones", "cone_rays", "lobe_rays"].map(|trace| {
+            let small = [
+                ("voxel_dim", "16"),
+                ("shadow_dim", "256"),
+                ("exact_rays", "4"),
+                ("trace", trace),
+            ];
+            let name = format!("trace {trace}");
+            Experiment {
+                name,
+                ..with(
+                    Experiment {
+                        params: Vec::new(),
+                        ..presets().remove(0)
+                    },
+                    &small,
+                )
+            }
+        }))
+    {
+        let params = case
+            .params
+            .iter()
+            .map(|(name, value)| (name.value.clone(), value.clone()))
+            .collect();
+        let side = SideRequest {
+            graph: case.graph.clone(),
+            params,
+        };
         let mut request = RenderRequest {
             sides: [Some(side.clone()), None],
             scene: "cornell".into(),
@@ -189,8 +257,16 @@ fn equal_settings_of_a_and_b_differ_in_no_bit() {
         request.sides[1] = Some(side);
         let both = ask(&request);
         let pair = converged(&engine, both, 2);
-        assert!(pair[0].bytes == pair[1].bytes, "{}: A and B differ", case.name);
-        assert!(pair[0].bytes != alone, "{}: the light was not changed", case.name);
+        assert!(
+            pair[0].bytes == pair[1].bytes,
+            "{}: A and B differ",
+            case.name
+        );
+        assert!(
+            pair[0].bytes != alone,
+            "{}: the light was not changed",
+            case.name
+        );
     }
     assert_eq!(engine.stop(Duration::from_secs(60)), Vec::<String>::new());
 }
@@ -201,22 +277,58 @@ fn a_point_of_a_sweep_lands_on_its_dot_in_the_chart() {
     let lab = lab(home.path());
     let cornell = scene("cornell");
     let settings = [("voxel_dim", "16"), ("shadow_dim", "256")];
-    let case = with(Experiment { params: Vec::new(), ..presets().remove(0) }, &settings);
+    let case = with(
+        Experiment {
+            params: Vec::new(),
+            ..presets().remove(0)
+        },
+        &settings,
+    );
     let go_on = &mut |_| ControlFlow::Continue(());
     let reference = Arc::new(gather(&lab, &case, &cornell, 64, Goal::Samples(32), go_on).unwrap());
     // A sweep that asks for fewer frames than light needs.
-    let frames = Frames { warmup: 1, count: 3 };
+    let frames = Frames {
+        warmup: 1,
+        count: 3,
+    };
     let references = [(64, reference)];
-    let point = measure(&lab, &mut Warm::default(), &case, &cornell, frames, &references, Scored::All).unwrap().point;
+    let point = measure(
+        &lab,
+        &mut Warm::default(),
+        &case,
+        &cornell,
+        frames,
+        &references,
+        Scored::All,
+    )
+    .unwrap()
+    .point;
     let metric = METRICS.iter().find(|m| m.key == "relmse").unwrap();
     let dot = metric.distance(point.scores["total"].get(metric.key));
 
-    let options = GpuOptions { device: Some(common::device()), validation: true, ..GpuOptions::default() };
-    let home = Workspace { root: home.path().to_path_buf(), cache: Some(common::cache()) };
+    let options = GpuOptions {
+        device: Some(common::device()),
+        validation: true,
+        ..GpuOptions::default()
+    };
+    let home = Workspace {
+        root: home.path().to_path_buf(),
+        cache: Some(common::cache()),
+    };
     let engine = Engine::start(home, options, Arc::new(|| {}));
-    let params = case.params.iter().map(|(name, value)| (name.value.clone(), value.clone())).collect();
+    let params = case
+        .params
+        .iter()
+        .map(|(name, value)| (name.value.clone(), value.clone()))
+        .collect();
     let request = RenderRequest {
-        sides: [Some(SideRequest { graph: case.graph.clone(), params }), None],
+        sides: [
+            Some(SideRequest {
+                graph: case.graph.clone(),
+                params,
+            }),
+            None,
+        ],
         scene: "cornell".into(),
         size: case.size,
         bytes: true,
@@ -224,13 +336,33 @@ fn a_point_of_a_sweep_lands_on_its_dot_in_the_chart() {
     };
     engine.request(1, request);
     converged(&engine, 1, 1);
-    engine.order(Order::MeasureError(0, ErrorQuery { part: "total".into(), metric, bounces: 64, gathered: 0 }));
+    engine.order(Order::MeasureError(
+        0,
+        ErrorQuery {
+            part: "total".into(),
+            metric,
+            bounces: 64,
+            gathered: 0,
+        },
+    ));
     let shown = loop {
-        if let Report::Error(result) = engine.reports.recv_timeout(Duration::from_secs(120)).expect("an error") {
-            break result.result.unwrap().error.expect("the reference is on the disk").error;
+        if let Report::Error(result) = engine
+            .reports
+            .recv_timeout(Duration::from_secs(120))
+            .expect("an error")
+        {
+            break result
+                .result
+                .unwrap()
+                .error
+                .expect("the reference is on the disk")
+                .error;
         }
     };
     println!("the dot {dot:.4e}, the picture {shown:.4e}");
-    assert!((shown / dot - 1.0).abs() < 1e-6, "the dot {dot:.4e}, the picture {shown:.4e}");
+    assert!(
+        (shown / dot - 1.0).abs() < 1e-6,
+        "the dot {dot:.4e}, the picture {shown:.4e}"
+    );
     assert_eq!(engine.stop(Duration::from_secs(60)), Vec::<String>::new());
 }

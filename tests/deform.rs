@@ -23,7 +23,8 @@ const RADIUS: f32 = 0.3;
 /// is a lamp.
 fn figure(shines: bool) -> Scene {
     let mut m = model_file::Model::new();
-    let (mut positions, mut normals, mut weights, mut swollen) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut positions, mut normals, mut weights, mut swollen) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut indices: Vec<u8> = Vec::new();
     for ring in 0..RINGS {
         let y = 2.0 * ring as f32 / (RINGS - 1) as f32;
@@ -57,10 +58,21 @@ fn figure(shines: bool) -> Scene {
     let mesh = m.push("meshes", json!({ "primitives": [primitive] }));
     let upper = m.push("nodes", json!({ "translation": [0, 1, 0] }));
     let lower = m.node(json!({ "children": [upper] }));
-    let down = |y: f32| [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., y, 0., 1f32];
-    let bytes: Vec<u8> = [down(0.0), down(-1.0)].concat().iter().flat_map(|f| f.to_le_bytes()).collect();
+    let down = |y: f32| {
+        [
+            1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., y, 0., 1f32,
+        ]
+    };
+    let bytes: Vec<u8> = [down(0.0), down(-1.0)]
+        .concat()
+        .iter()
+        .flat_map(|f| f.to_le_bytes())
+        .collect();
     let inverse = m.raw(model_file::FLOAT, "MAT4", 2, &bytes, json!({}));
-    let skin = m.push("skins", json!({ "joints": [lower, upper], "inverseBindMatrices": inverse }));
+    let skin = m.push(
+        "skins",
+        json!({ "joints": [lower, upper], "inverseBindMatrices": inverse }),
+    );
     let node = m.node(json!({ "mesh": mesh, "skin": skin }));
     let grey = m.material(json!({ "pbrMetallicRoughness": { "metallicFactor": 0 } }));
     let floor = m.square(json!({}), Some(grey));
@@ -90,7 +102,11 @@ fn figure(shines: bool) -> Scene {
 
 /// The same as a model of the pose at a time, which does not move. `place` moves a vertex by the formula of the skin.
 fn modelled(scene: &Scene, time: f32) -> Scene {
-    let mut still = Scene { deformers: Vec::new(), movers: Vec::new(), ..scene.clone() };
+    let mut still = Scene {
+        deformers: Vec::new(),
+        movers: Vec::new(),
+        ..scene.clone()
+    };
     let rest = &scene.deformers[0].rest;
     let angle = time * std::f32::consts::FRAC_PI_2;
     let (sin, cos) = angle.sin_cos();
@@ -107,7 +123,11 @@ fn bent(rest: &Vertex, time: f32, sin: f32, cos: f32) -> Vertex {
     let swell = 1.0 + (y - 1.0).max(0.0) * 0.2 * time / RADIUS;
     let (x, z) = (x * swell, z * swell);
     let weight = (y - 0.5).clamp(0.0, 1.0);
-    let turned = [cos * x - sin * (y - 1.0), 1.0 + sin * x + cos * (y - 1.0), z];
+    let turned = [
+        cos * x - sin * (y - 1.0),
+        1.0 + sin * x + cos * (y - 1.0),
+        z,
+    ];
     let mix = |a: f32, b: f32| a + (b - a) * weight;
     let position = [mix(x, turned[0]), mix(y, turned[1]), z];
     // The blended turn is shrunk by its length, and turned by half-way angles.
@@ -115,7 +135,12 @@ fn bent(rest: &Vertex, time: f32, sin: f32, cos: f32) -> Vertex {
     let length2 = c * c + s * s;
     let n = Vec3::from_array(rest.normal);
     let normal = Vec3::new(c * n.x - s * n.y, s * n.x + c * n.y, length2 * n.z).normalize();
-    Vertex { position, normal: normal.to_array(), tangent: rest.tangent, ..*rest }
+    Vertex {
+        position,
+        normal: normal.to_array(),
+        tangent: rest.tangent,
+        ..*rest
+    }
 }
 
 fn look(time: f64, settings: &[(&str, &str)]) -> conelab::experiment::Experiment {
@@ -125,9 +150,17 @@ fn look(time: f64, settings: &[(&str, &str)]) -> conelab::experiment::Experiment
     look
 }
 
-fn session(lab: &Lab, scene: &Arc<Scene>, time: f64, frames: usize, settings: &[(&str, &str)]) -> Session {
+fn session(
+    lab: &Lab,
+    scene: &Arc<Scene>,
+    time: f64,
+    frames: usize,
+    settings: &[(&str, &str)],
+) -> Session {
     let wanted = vec!["radiance".to_owned()];
-    let (mut session, _) = lab.prepare(&look(time, settings), scene.clone(), |_| Ok(wanted)).unwrap();
+    let (mut session, _) = lab
+        .prepare(&look(time, settings), scene.clone(), |_| Ok(wanted))
+        .unwrap();
     for _ in 0..frames {
         session.frame(0.0).unwrap();
     }
@@ -135,10 +168,16 @@ fn session(lab: &Lab, scene: &Arc<Scene>, time: f64, frames: usize, settings: &[
 }
 
 fn mean_difference(a: &[[f32; 4]], b: &[[f32; 4]]) -> (f64, f64) {
-    let differences = a.iter().zip(b).map(|(a, b)| f64::from((a[0] - b[0]).abs() + (a[1] - b[1]).abs()) / 2.0);
+    let differences = a
+        .iter()
+        .zip(b)
+        .map(|(a, b)| f64::from((a[0] - b[0]).abs() + (a[1] - b[1]).abs()) / 2.0);
     let list: Vec<f64> = differences.collect();
     let level = a.iter().map(|c| f64::from(c[0] + c[1]) / 2.0).sum::<f64>() / a.len() as f64;
-    (list.iter().sum::<f64>() / list.len() as f64 / level, list.iter().copied().fold(0.0, f64::max))
+    (
+        list.iter().sum::<f64>() / list.len() as f64 / level,
+        list.iter().copied().fold(0.0, f64::max),
+    )
 }
 
 const SMALL: [(&str, &str); 2] = [("voxel_dim", "32"), ("shadow_dim", "256")];
@@ -176,12 +215,28 @@ fn the_reference_follows_the_skin() {
         let scene = Arc::new(figure(shines));
         let mut means = Vec::new();
         for scene in [scene.clone(), Arc::new(modelled(&scene, 0.6))] {
-            let found = gather(&lab, &look(0.6, &SMALL), &scene, 2, Goal::Samples(256), keep_on).unwrap();
-            means.push((found.parts["total"].mean.mean(), found.parts["total"].noise.relmse));
+            let found = gather(
+                &lab,
+                &look(0.6, &SMALL),
+                &scene,
+                2,
+                Goal::Samples(256),
+                keep_on,
+            )
+            .unwrap();
+            means.push((
+                found.parts["total"].mean.mean(),
+                found.parts["total"].noise.relmse,
+            ));
         }
-        let [(moving, noise), (modelled, _)] = means[..] else { unreachable!() };
+        let [(moving, noise), (modelled, _)] = means[..] else {
+            unreachable!()
+        };
         println!("lamp {shines}: {moving:.6} and {modelled:.6}, noise {noise:.1e}");
-        assert!((moving / modelled - 1.0).abs() < 0.004, "{moving}, not {modelled}");
+        assert!(
+            (moving / modelled - 1.0).abs() < 0.004,
+            "{moving}, not {modelled}"
+        );
     }
     assert_clean(&lab);
 }
@@ -200,7 +255,10 @@ fn frames_that_redo_what_changed_are_those_that_redo_all() {
             floats(&mut session, "radiance", 0)
         })
     });
-    assert!(all == changed, "a picture that nothing was forgotten in differs");
+    assert!(
+        all == changed,
+        "a picture that nothing was forgotten in differs"
+    );
     assert_ne!(all[2], all[6]);
     assert_clean(&lab);
 }
@@ -208,17 +266,31 @@ fn frames_that_redo_what_changed_are_those_that_redo_all() {
 #[test]
 fn exact_triangles_for_voxels_are_those_of_the_pose() {
     let scene = figure(false);
-    let (found, expected) = (triangles_of(&scene, 0.6), triangles_of(&modelled(&scene, 0.6), 0.0));
+    let (found, expected) = (
+        triangles_of(&scene, 0.6),
+        triangles_of(&modelled(&scene, 0.6), 0.0),
+    );
     assert_eq!(found.len(), expected.len());
     for (a, b) in found.iter().zip(&expected) {
-        a.corners.iter().zip(&b.corners).for_each(|(a, b)| assert!(a.distance(*b) < 1e-5, "{a} {b}"));
-        a.normals.iter().zip(&b.normals).for_each(|(a, b)| assert!(a.distance(*b) < 1e-4, "{a} {b}"));
+        a.corners
+            .iter()
+            .zip(&b.corners)
+            .for_each(|(a, b)| assert!(a.distance(*b) < 1e-5, "{a} {b}"));
+        a.normals
+            .iter()
+            .zip(&b.normals)
+            .for_each(|(a, b)| assert!(a.distance(*b) < 1e-4, "{a} {b}"));
     }
     // And those of bounds hold all of them.
     let (low, high) = scene.bounds();
-    let corners = (0..=20).flat_map(|i| triangles_of(&scene, f64::from(i) * 0.0499)).flat_map(|t| t.corners);
+    let corners = (0..=20)
+        .flat_map(|i| triangles_of(&scene, f64::from(i) * 0.0499))
+        .flat_map(|t| t.corners);
     for corner in corners.map(|c| c.as_vec3()) {
-        assert!((corner - low).min_element() > -1e-4 && (high - corner).min_element() > -1e-4, "{corner}");
+        assert!(
+            (corner - low).min_element() > -1e-4 && (high - corner).min_element() > -1e-4,
+            "{corner}"
+        );
     }
 }
 
@@ -227,17 +299,37 @@ fn exact_triangles_for_voxels_are_those_of_the_pose() {
 fn triangles_that_were_split_follow_the_skin() {
     let scene = figure(false);
     let split = scene.split_triangles(0.1);
-    let (deformer, mesh) = (&split.deformers[0], &split.meshes[split.deformers[0].mesh as usize]);
-    assert_eq!(deformer.rest.len() + deformer.halves.len(), mesh.vertices.len());
-    assert!(mesh.triangle_count() > 3 * scene.meshes[scene.deformers[0].mesh as usize].triangle_count());
+    let (deformer, mesh) = (
+        &split.deformers[0],
+        &split.meshes[split.deformers[0].mesh as usize],
+    );
+    assert_eq!(
+        deformer.rest.len() + deformer.halves.len(),
+        mesh.vertices.len()
+    );
+    assert!(
+        mesh.triangle_count() > 3 * scene.meshes[scene.deformers[0].mesh as usize].triangle_count()
+    );
     let area = |scene: &Scene, time: f64| -> f64 {
         let triangles = triangles_of(scene, time).into_iter();
-        triangles.map(|t| 0.5 * (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).length()).sum()
+        triangles
+            .map(|t| {
+                0.5 * (t.corners[1] - t.corners[0])
+                    .cross(t.corners[2] - t.corners[0])
+                    .length()
+            })
+            .sum()
     };
     for time in [0.0, 0.6, 0.9] {
         let (whole, parts) = (area(&scene, time), area(&split, time));
         println!("{time} s: {whole:.5} and {parts:.5} m^2");
-        assert!((parts / whole - 1.0).abs() < 1e-5, "{time} s: {whole} and {parts}");
+        assert!(
+            (parts / whole - 1.0).abs() < 1e-5,
+            "{time} s: {whole} and {parts}"
+        );
     }
-    assert!((area(&scene, 0.0) / area(&scene, 0.9) - 1.0).abs() > 1e-3, "the surface changes");
+    assert!(
+        (area(&scene, 0.0) / area(&scene, 0.9) - 1.0).abs() > 1e-3,
+        "the surface changes"
+    );
 }

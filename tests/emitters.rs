@@ -6,7 +6,8 @@ use common::{assert_clean, experiment, floats, home, lab, mean, root, scene};
 use conelab::experiment::{CameraChoice, PlacedCamera};
 use conelab::measure::reference::{Goal, gather};
 use conelab::scene::{
-    Instance, Keyframe, Material, Mesh, Mover, Scene, Submesh, Texture, TextureFormat, Track, Vertex,
+    Instance, Keyframe, Material, Mesh, Mover, Scene, Submesh, Texture, TextureFormat, Track,
+    Vertex,
 };
 use glam::{Mat4, Quat, Vec3, Vec4};
 use std::ops::ControlFlow;
@@ -28,15 +29,27 @@ fn square(edge: f32, material: u32) -> Mesh {
         name: "square".into(),
         vertices: vec![at(0.0, 0.0), at(0.0, 1.0), at(1.0, 1.0), at(1.0, 0.0)],
         indices: vec![0, 1, 2, 0, 2, 3],
-        submeshes: vec![Submesh { first_index: 0, index_count: 6, material }],
+        submeshes: vec![Submesh {
+            first_index: 0,
+            index_count: 6,
+            material,
+        }],
     }
 }
 
 /// A floor, and a square lamp of this edge a metre above its middle.
 fn under_a_lamp(edge: f32) -> Scene {
     // Without a lobe, which would take its share of the light.
-    let floor = Material { base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), specular: 0.0, ..Material::default() };
-    let lamp = Material { emission: Vec3::splat(RADIANCE as f32), base_color: Vec4::W, ..Material::default() };
+    let floor = Material {
+        base_color: Vec4::new(0.5, 0.5, 0.5, 1.0),
+        specular: 0.0,
+        ..Material::default()
+    };
+    let lamp = Material {
+        emission: Vec3::splat(RADIANCE as f32),
+        base_color: Vec4::W,
+        ..Material::default()
+    };
     let place = |mesh: u32, height: f32| Instance {
         name: format!("square {mesh}"),
         mesh,
@@ -67,9 +80,20 @@ fn floor_light(scene: Scene, samples: u64, time: f64) -> (f64, f64) {
     look.camera = CameraChoice::Placed(PlacedCamera::new((0.0, 0.3, 0.3), (0.0, 0.0, 0.0), 1.0));
     look.time = time;
     let keep_on = &mut |_| ControlFlow::Continue(());
-    let found = gather(&lab, &look, &Arc::new(scene), 1, Goal::Samples(samples), keep_on).unwrap();
+    let found = gather(
+        &lab,
+        &look,
+        &Arc::new(scene),
+        1,
+        Goal::Samples(samples),
+        keep_on,
+    )
+    .unwrap();
     assert_clean(&lab);
-    (found.parts["diffuse"].mean.mean(), found.parts["diffuse"].noise.relmse)
+    (
+        found.parts["diffuse"].mean.mean(),
+        found.parts["diffuse"].noise.relmse,
+    )
 }
 
 #[test]
@@ -77,15 +101,22 @@ fn lamps_from_two_centimetres_to_thirty_metres_light_the_floor_by_their_form_fac
     for edge in [0.02, 0.3, 1.0, 5.0, 30.0] {
         let expected = ALBEDO * RADIANCE * form_factor(edge);
         let (found, noise) = floor_light(under_a_lamp(edge as f32), 64, 0.0);
-        println!("a lamp of {edge} m: {found:.6}, by its form factor {expected:.6}, noise {noise:.1e}");
-        assert!((found / expected - 1.0).abs() < 0.01, "{edge} m: {found}, not {expected}");
+        println!(
+            "a lamp of {edge} m: {found:.6}, by its form factor {expected:.6}, noise {noise:.1e}"
+        );
+        assert!(
+            (found / expected - 1.0).abs() < 0.01,
+            "{edge} m: {found}, not {expected}"
+        );
     }
 }
 
 #[test]
 fn a_lamp_whose_texture_is_half_black_gives_half_its_light() {
     let mut scene = under_a_lamp(1.0);
-    let row: Vec<u8> = (0..64).flat_map(|x| [if x < 32 { 255 } else { 0 }; 4]).collect();
+    let row: Vec<u8> = (0..64)
+        .flat_map(|x| [if x < 32 { 255 } else { 0 }; 4])
+        .collect();
     scene.textures.push(Texture {
         name: "half".into(),
         width: 64,
@@ -97,27 +128,50 @@ fn a_lamp_whose_texture_is_half_black_gives_half_its_light() {
     let expected = 0.5 * ALBEDO * RADIANCE * form_factor(1.0);
     let (found, noise) = floor_light(scene, 256, 0.0);
     println!("{found:.5}, expected {expected:.5}, noise {noise:.1e}");
-    assert!((found / expected - 1.0).abs() < 0.01, "{found}, not {expected}");
+    assert!(
+        (found / expected - 1.0).abs() < 0.01,
+        "{found}, not {expected}"
+    );
 }
 
 /// Half of the lamp is cut out by alpha. The method draws places on it, and voxels do not know the holes.
 #[test]
 fn a_lamp_whose_mask_cuts_out_half_gives_half_its_light() {
-    let row: Vec<u8> = (0..64).flat_map(|x| [255, 255, 255, if x < 32 { 255 } else { 0 }]).collect();
+    let row: Vec<u8> = (0..64)
+        .flat_map(|x| [255, 255, 255, if x < 32 { 255 } else { 0 }])
+        .collect();
     let mut masked = under_a_lamp(1.0);
     let (width, height, format) = (64, 64, TextureFormat::Rgba8Srgb);
-    masked.textures.push(Texture { name: "half".into(), width, height, format, mips: vec![row.repeat(64)] });
-    (masked.materials[1].base_color_texture, masked.materials[1].alpha_cutoff) = (Some(0), 0.5);
+    masked.textures.push(Texture {
+        name: "half".into(),
+        width,
+        height,
+        format,
+        mips: vec![row.repeat(64)],
+    });
+    (
+        masked.materials[1].base_color_texture,
+        masked.materials[1].alpha_cutoff,
+    ) = (Some(0), 0.5);
     let expected = 0.5 * ALBEDO * RADIANCE * form_factor(1.0);
     let (found, noise) = floor_light(masked.clone(), 256, 0.0);
     println!("reference: {found:.5}, expected {expected:.5}, noise {noise:.1e}");
-    assert!((found / expected - 1.0).abs() < 0.01, "{found}, not {expected}");
+    assert!(
+        (found / expected - 1.0).abs() < 0.01,
+        "{found}, not {expected}"
+    );
 
     let lab = lab(root());
-    let settings = [("voxel_dim", "64"), ("volume", "box"), ("volume_size", "(4, 4, 4)"), ("gather_frames", "1")];
+    let settings = [
+        ("voxel_dim", "64"),
+        ("volume", "box"),
+        ("volume_size", "(4, 4, 4)"),
+        ("gather_frames", "1"),
+    ];
     let [half, whole] = [masked, under_a_lamp(1.0)].map(|scene| {
         let mut look = experiment("lamp", (16, 12), &settings);
-        look.camera = CameraChoice::Placed(PlacedCamera::new((0.0, 0.3, 0.3), (0.0, 0.0, 0.0), 20.0));
+        look.camera =
+            CameraChoice::Placed(PlacedCamera::new((0.0, 0.3, 0.3), (0.0, 0.0, 0.0), 20.0));
         let wanted = vec!["diffuseIndirect".to_owned()];
         let (mut session, _) = lab.prepare(&look, Arc::new(scene), |_| Ok(wanted)).unwrap();
         for _ in 0..4 {
@@ -133,17 +187,27 @@ fn a_lamp_whose_mask_cuts_out_half_gives_half_its_light() {
 
 #[test]
 fn a_lamp_that_moves_takes_its_light_along() {
-    let key =
-        |time: f32, height: f32| Keyframe { time, translation: Vec3::Y * (height - 1.0), rotation: Quat::IDENTITY };
+    let key = |time: f32, height: f32| Keyframe {
+        time,
+        translation: Vec3::Y * (height - 1.0),
+        rotation: Quat::IDENTITY,
+    };
     let mut scene = under_a_lamp(0.5);
     let track = Track::rigid(&[key(0.0, 1.0), key(1.0, 2.0)], false).into();
-    scene.movers = vec![Mover { parent: None, placed: Mat4::IDENTITY, track }];
+    scene.movers = vec![Mover {
+        parent: None,
+        placed: Mat4::IDENTITY,
+        track,
+    }];
     scene.instances[1].mover = Some(0);
     for (time, height) in [(0.0, 1.0), (0.5, 1.5), (1.0, 2.0)] {
         let expected = ALBEDO * RADIANCE * form_factor(0.5 / height);
         let (found, _) = floor_light(scene.clone(), 64, time);
         println!("{height} m high: {found:.5}, expected {expected:.5}");
-        assert!((found / expected - 1.0).abs() < 0.01, "{height} m: {found}, not {expected}");
+        assert!(
+            (found / expected - 1.0).abs() < 0.01,
+            "{height} m: {found}, not {expected}"
+        );
     }
 }
 
@@ -153,29 +217,59 @@ fn a_small_lamp_lights_its_room() {
     let home = home();
     let lab = lab(home.path());
     for camera in ["default", "outside"] {
-        let mut look = experiment("small-quad", (48, 36), &[("voxel_dim", "64"), ("gather_frames", "4")]);
+        let mut look = experiment(
+            "small-quad",
+            (48, 36),
+            &[("voxel_dim", "64"), ("gather_frames", "4")],
+        );
         look.camera = CameraChoice::Named(camera.into());
         let keep_on = &mut |_| ControlFlow::Continue(());
-        let truth = gather(&lab, &look, &scene("small-quad"), 64, Goal::Samples(128), keep_on).unwrap();
+        let truth = gather(
+            &lab,
+            &look,
+            &scene("small-quad"),
+            64,
+            Goal::Samples(128),
+            keep_on,
+        )
+        .unwrap();
         let wanted = ["radiance", "diffuseIndirect"].map(String::from).to_vec();
-        let (mut session, _) = lab.prepare(&look, scene("small-quad"), |_| Ok(wanted)).unwrap();
+        let (mut session, _) = lab
+            .prepare(&look, scene("small-quad"), |_| Ok(wanted))
+            .unwrap();
         for _ in 0..16 {
             session.frame(0.0).unwrap();
         }
         session.finish().unwrap();
         let energy = mean(&floats(&mut session, "radiance", 0)) / truth.parts["total"].mean.mean();
         // The floor before the boxes: the lowest rows of the picture.
-        let (found, rgb) = (floats(&mut session, "diffuseIndirect", 0), &truth.parts["diffuse"].mean.rgb);
+        let (found, rgb) = (
+            floats(&mut session, "diffuseIndirect", 0),
+            &truth.parts["diffuse"].mean.rgb,
+        );
         let row = |y: usize| y * 48 + 6..y * 48 + 42;
-        let rows: Vec<usize> = if camera == "default" { row(34).chain(row(35)).collect() } else { row(30).collect() };
+        let rows: Vec<usize> = if camera == "default" {
+            row(34).chain(row(35)).collect()
+        } else {
+            row(30).collect()
+        };
         let floor = [
             rows.iter().map(|i| f64::from(found[*i][1])).sum::<f64>(),
             rows.iter().map(|i| f64::from(rgb[*i][1])).sum::<f64>(),
         ];
-        println!("from {camera}: energy {energy:.3}, of the floor {:.3}", floor[0] / floor[1]);
+        println!(
+            "from {camera}: energy {energy:.3}, of the floor {:.3}",
+            floor[0] / floor[1]
+        );
         // Of 64 voxels an edge; 160 have all of it (docs/results.md).
-        assert!((0.85..1.1).contains(&energy), "from {camera}: energy {energy}");
-        assert!((0.8..1.2).contains(&(floor[0] / floor[1])), "from {camera}: the floor has {floor:?}");
+        assert!(
+            (0.85..1.1).contains(&energy),
+            "from {camera}: energy {energy}"
+        );
+        assert!(
+            (0.8..1.2).contains(&(floor[0] / floor[1])),
+            "from {camera}: the floor has {floor:?}"
+        );
         assert_clean(&lab);
     }
 }
@@ -202,7 +296,9 @@ fn a_bulb_of_a_few_voxels_lights_its_room_evenly() {
         let look = experiment(&name, (64, 48), &[("voxel_dim", "64")]);
         let keep_on = &mut |_| ControlFlow::Continue(());
         let truth = gather(&lab, &look, &scene(&name), 64, Goal::Samples(128), keep_on).unwrap();
-        let (mut session, _) = lab.prepare(&look, scene(&name), |_| Ok(vec!["diffuseIndirect".into()])).unwrap();
+        let (mut session, _) = lab
+            .prepare(&look, scene(&name), |_| Ok(vec!["diffuseIndirect".into()]))
+            .unwrap();
         for _ in 0..24 {
             session.frame(0.0).unwrap();
         }
@@ -213,13 +309,27 @@ fn a_bulb_of_a_few_voxels_lights_its_room_evenly() {
         // Of blocks of 8x8 pixels, which share their rays: noise of the reference goes out.
         let block = |x: usize, y: usize| {
             let pixels = (0..64).map(|i| (8 * y + i / 8) * 64 + 8 * x + i % 8);
-            pixels.fold([0.0, 0.0], |[a, b], i| [a + f64::from(found[i][1]), b + f64::from(expected[i][1])])
+            pixels.fold([0.0, 0.0], |[a, b], i| {
+                [a + f64::from(found[i][1]), b + f64::from(expected[i][1])]
+            })
         };
-        let ratios = (0..48).map(|i| block(i % 8, i / 8)).map(|[a, b]| a / b / energy);
-        let (least, most) = ratios.fold((f64::MAX, 0f64), |(least, most), r| (least.min(r), most.max(r)));
-        println!("radius {radius} m: energy {energy:.3}, blocks {least:.3} to {most:.3} of their light");
-        assert!((0.96..1.04).contains(&energy), "radius {radius}: energy {energy}");
-        assert!(least > 0.9 && most < 1.1, "radius {radius}: blocks have {least:.3} to {most:.3} of their light");
+        let ratios = (0..48)
+            .map(|i| block(i % 8, i / 8))
+            .map(|[a, b]| a / b / energy);
+        let (least, most) = ratios.fold((f64::MAX, 0f64), |(least, most), r| {
+            (least.min(r), most.max(r))
+        });
+        println!(
+            "radius {radius} m: energy {energy:.3}, blocks {least:.3} to {most:.3} of their light"
+        );
+        assert!(
+            (0.96..1.04).contains(&energy),
+            "radius {radius}: energy {energy}"
+        );
+        assert!(
+            least > 0.9 && most < 1.1,
+            "radius {radius}: blocks have {least:.3} to {most:.3} of their light"
+        );
         assert_clean(&lab);
     }
 }
@@ -228,9 +338,15 @@ fn a_bulb_of_a_few_voxels_lights_its_room_evenly() {
 fn no_order_of_a_files_triangles_shows_in_a_hundred_lamps() {
     let lab = lab(root());
     let own = scene("emitters");
-    let look = experiment("emitters", (48, 27), &[("voxel_dim", "32"), ("gather_frames", "1")]);
+    let look = experiment(
+        "emitters",
+        (48, 27),
+        &[("voxel_dim", "32"), ("gather_frames", "1")],
+    );
     let picture = |scene: Arc<Scene>| {
-        let (mut session, _) = lab.prepare(&look, scene, |_| Ok(vec!["radiance".into()])).unwrap();
+        let (mut session, _) = lab
+            .prepare(&look, scene, |_| Ok(vec!["radiance".into()]))
+            .unwrap();
         for _ in 0..2 {
             session.frame(0.0).unwrap();
         }
@@ -239,5 +355,8 @@ fn no_order_of_a_files_triangles_shows_in_a_hundred_lamps() {
         session.texels("radiance", 0, 0).unwrap().bytes
     };
     let expected = picture(own.clone());
-    assert!(picture(Arc::new(own.shuffled(4))) == expected, "triangles in another order give another picture");
+    assert!(
+        picture(Arc::new(own.shuffled(4))) == expected,
+        "triangles in another order give another picture"
+    );
 }

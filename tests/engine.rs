@@ -34,9 +34,15 @@ impl Driver {
             faults: Some(faults.clone()),
             ..GpuOptions::default()
         };
-        let home = Workspace { root: root().to_path_buf(), cache: Some(common::cache()) };
+        let home = Workspace {
+            root: root().to_path_buf(),
+            cache: Some(common::cache()),
+        };
         let engine = Engine::start(home.clone(), options.clone(), Arc::new(|| {}));
-        let side = SideRequest { graph: "preview.ron".into(), params: Vec::new() };
+        let side = SideRequest {
+            graph: "preview.ron".into(),
+            params: Vec::new(),
+        };
         let request = RenderRequest {
             sides: [Some(side), None],
             scene: "triangles".into(),
@@ -44,13 +50,20 @@ impl Driver {
             bytes: true,
             ..RenderRequest::default()
         };
-        Driver { engine, faults, options, home, request }
+        Driver {
+            engine,
+            faults,
+            options,
+            home,
+            request,
+        }
     }
 
     /// Asks for another frame.
     fn ask(&mut self) {
         self.request.clock.jumps += 1;
-        self.engine.request(self.request.clock.jumps, self.request.clone());
+        self.engine
+            .request(self.request.clock.jumps, self.request.clone());
     }
 
     /// The first report that `pick` takes.
@@ -58,7 +71,11 @@ impl Driver {
         let until = Instant::now() + PATIENCE;
         loop {
             let left = until.saturating_duration_since(Instant::now());
-            let report = self.engine.reports.recv_timeout(left).unwrap_or_else(|e| panic!("{what}: {e}"));
+            let report = self
+                .engine
+                .reports
+                .recv_timeout(left)
+                .unwrap_or_else(|e| panic!("{what}: {e}"));
             if let Some(found) = pick(report) {
                 return found;
             }
@@ -97,11 +114,21 @@ fn a_hundred_lost_devices_and_twenty_that_hang_are_replaced() {
         }
         driver.ask();
         let why = driver.failure();
-        let expected = if hangs { "has not finished a frame" } else { "the GPU was lost" };
-        assert!(why.contains(expected) && why.contains("Change a shader or a value"), "{why}");
+        let expected = if hangs {
+            "has not finished a frame"
+        } else {
+            "the GPU was lost"
+        };
+        assert!(
+            why.contains(expected) && why.contains("Change a shader or a value"),
+            "{why}"
+        );
         driver.ask();
         let again = driver.picture();
-        assert!(again.bytes == first.bytes, "another picture after failure {turn}");
+        assert!(
+            again.bytes == first.bytes,
+            "another picture after failure {turn}"
+        );
         assert!(driver.engine.failure().is_none());
     }
     assert_eq!(driver.engine.stop(PATIENCE), Vec::<String>::new());
@@ -123,11 +150,25 @@ fn an_engine_that_ends_by_a_fault_says_so_and_another_goes_on() {
             None => std::thread::sleep(Duration::from_millis(5)),
         }
     };
-    assert!(why.contains("a fault in the program") && why.contains("asked for by a test"), "{why}");
+    assert!(
+        why.contains("a fault in the program") && why.contains("asked for by a test"),
+        "{why}"
+    );
     let failed = (driver.request.clock.jumps, driver.request.clone());
-    driver.engine = Engine::replace(driver.home.clone(), driver.options.clone(), Arc::new(|| {}), failed);
+    driver.engine = Engine::replace(
+        driver.home.clone(),
+        driver.options.clone(),
+        Arc::new(|| {}),
+        failed,
+    );
     // It does not try the same again by itself.
-    assert!(driver.engine.reports.recv_timeout(Duration::from_millis(300)).is_err());
+    assert!(
+        driver
+            .engine
+            .reports
+            .recv_timeout(Duration::from_millis(300))
+            .is_err()
+    );
     driver.ask();
     assert!(driver.picture().bytes == first.bytes);
     assert_eq!(driver.engine.stop(PATIENCE), Vec::<String>::new());
@@ -170,12 +211,22 @@ fn a_shader_that_hangs_is_left_behind() {
         }",
     );
     let mut driver = Driver::start();
-    let options = GpuOptions { patience: Some(Duration::from_secs(3)), ..driver.options.clone() };
+    let options = GpuOptions {
+        patience: Some(Duration::from_secs(3)),
+        ..driver.options.clone()
+    };
     driver.home.root = home.path().to_path_buf();
     driver.engine = Engine::start(driver.home.clone(), options, Arc::new(|| {}));
     let side = |endless: bool| {
-        let params = if endless { vec![("endless".into(), "true".into())] } else { Vec::new() };
-        Some(SideRequest { graph: "endless.ron".into(), params })
+        let params = if endless {
+            vec![("endless".into(), "true".into())]
+        } else {
+            Vec::new()
+        };
+        Some(SideRequest {
+            graph: "endless.ron".into(),
+            params,
+        })
     };
     driver.request.sides[0] = side(false);
     driver.ask();
@@ -184,8 +235,15 @@ fn a_shader_that_hangs_is_left_behind() {
     driver.ask();
     let begun = Instant::now();
     let why = driver.failure();
-    assert!(why.contains("has not finished a frame within 3 s") || why.contains("the GPU was lost"), "{why}");
-    assert!(begun.elapsed() < Duration::from_secs(30), "noticed after {:?}", begun.elapsed());
+    assert!(
+        why.contains("has not finished a frame within 3 s") || why.contains("the GPU was lost"),
+        "{why}"
+    );
+    assert!(
+        begun.elapsed() < Duration::from_secs(30),
+        "noticed after {:?}",
+        begun.elapsed()
+    );
     // Another device of the same GPU renders, while the endless work is still there.
     driver.request.sides[0] = side(false);
     driver.ask();

@@ -45,7 +45,10 @@ const DRAWS: [&str; 3] = ["workbench", "vulkan/painter.rs", "results/timers.rs"]
 fn floor(room: &str) -> usize {
     let found = FLOORS.iter().position(|rooms| rooms.contains(&room));
     found.unwrap_or_else(|| {
-        assert!(TOP.contains(&room), "src/{room} has no floor: add it to the table, and to docs/architecture.md");
+        assert!(
+            TOP.contains(&room),
+            "src/{room} has no floor: add it to the table, and to docs/architecture.md"
+        );
         FLOORS.len()
     })
 }
@@ -59,7 +62,11 @@ fn sources(folder: &Path, under: &str, list: &mut Vec<(String, String)>) {
         } else if name.ends_with(".rs") {
             let text = std::fs::read_to_string(entry.path()).unwrap();
             // Tests of a file may look at anything.
-            let text = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default().to_string();
+            let text = text
+                .split("#[cfg(test)]\nmod ")
+                .next()
+                .unwrap_or_default()
+                .to_string();
             list.push((name, text));
         }
     }
@@ -67,8 +74,16 @@ fn sources(folder: &Path, under: &str, list: &mut Vec<(String, String)>) {
 
 /// The modules of the crate that a text names, by `crate::` and its groups.
 fn named(text: &str) -> BTreeSet<String> {
-    let word = |s: &str| s.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
-    let code = text.lines().filter(|l| !l.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+    let word = |s: &str| {
+        s.chars()
+            .take_while(|c| c.is_alphanumeric() || *c == '_')
+            .collect::<String>()
+    };
+    let code = text
+        .lines()
+        .filter(|l| !l.trim_start().starts_with("//"))
+        .collect::<Vec<_>>()
+        .join("\n");
     let mut found = BTreeSet::new();
     for rest in code.split("crate::").skip(1) {
         match rest.strip_prefix('{') {
@@ -102,7 +117,9 @@ fn no_module_knows_what_stands_above_it() {
             if !FLOORS.concat().contains(&other.as_str()) && !TOP.contains(&other.as_str()) {
                 continue;
             }
-            let strangers = STRANGERS.iter().any(|(a, b)| (room, other.as_str()) == (a, b));
+            let strangers = STRANGERS
+                .iter()
+                .any(|(a, b)| (room, other.as_str()) == (a, b));
             if floor(other) > floor(room) || strangers {
                 wrong.push(format!("src/{file} names {other}"));
             }
@@ -123,9 +140,20 @@ fn no_room_of_the_graph_knows_what_stands_above_it() {
         let room = file.split('/').next().unwrap().trim_end_matches(".rs");
         let own = floor(room).unwrap_or_else(|| panic!("src/graph/{room} has no floor"));
         // Of a file that stands in no folder, its parent is the graph.
-        let text = if file.contains('/') { text.clone() } else { text.replace("super::", "crate::graph::") };
-        for other in named(&text.replace("crate::graph::", "crate::")).iter().filter(|o| o.as_str() != room) {
-            wrong.extend(floor(other).filter(|f| *f > own).map(|_| format!("src/graph/{file} names {other}")));
+        let text = if file.contains('/') {
+            text.clone()
+        } else {
+            text.replace("super::", "crate::graph::")
+        };
+        for other in named(&text.replace("crate::graph::", "crate::"))
+            .iter()
+            .filter(|o| o.as_str() != room)
+        {
+            wrong.extend(
+                floor(other)
+                    .filter(|f| *f > own)
+                    .map(|_| format!("src/graph/{file} names {other}")),
+            );
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -135,12 +163,19 @@ fn no_room_of_the_graph_knows_what_stands_above_it() {
 fn the_method_is_known_to_graphs_and_shaders_alone() {
     let mut list = Vec::new();
     for room in ["graph", "shader", "vulkan"] {
-        sources(&common::root().join("src").join(room), &format!("{room}/"), &mut list);
+        sources(
+            &common::root().join("src").join(room),
+            &format!("{room}/"),
+            &mut list,
+        );
     }
-    let lines = list.iter().flat_map(|(file, text)| text.lines().map(move |line| (file, line.to_lowercase())));
+    let lines = list
+        .iter()
+        .flat_map(|(file, text)| text.lines().map(move |line| (file, line.to_lowercase())));
     let code = lines.filter(|(_, line)| !line.trim_start().starts_with("//"));
-    let wrong: Vec<_> =
-        code.filter(|(_, line)| line.contains("voxel") || line.replace("conelab", "").contains("cone")).collect();
+    let wrong: Vec<_> = code
+        .filter(|(_, line)| line.contains("voxel") || line.replace("conelab", "").contains("cone"))
+        .collect();
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
@@ -148,39 +183,64 @@ fn the_method_is_known_to_graphs_and_shaders_alone() {
 fn only_what_is_drawn_knows_the_windows_library() {
     let mut list = Vec::new();
     sources(&common::root().join("src"), "", &mut list);
-    let allowed = |file: &str| DRAWS.iter().any(|d| file.starts_with(d)) || file == "campaign/stability/sheet.rs";
-    let wrong: Vec<_> = list.iter().filter(|(f, t)| t.contains("egui") && !allowed(f)).map(|(f, _)| f).collect();
+    let allowed = |file: &str| {
+        DRAWS.iter().any(|d| file.starts_with(d)) || file == "campaign/stability/sheet.rs"
+    };
+    let wrong: Vec<_> = list
+        .iter()
+        .filter(|(f, t)| t.contains("egui") && !allowed(f))
+        .map(|(f, _)| f)
+        .collect();
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
 /// A heading as links name it: letters, digits, hyphens and underscores, in lower case, and hyphens for spaces.
 fn anchor(heading: &str) -> String {
     let kept = heading.to_lowercase().replace(' ', "-");
-    kept.chars().filter(|c| c.is_alphanumeric() || ['-', '_'].contains(c)).collect()
+    kept.chars()
+        .filter(|c| c.is_alphanumeric() || ['-', '_'].contains(c))
+        .collect()
 }
 
 #[test]
 fn every_link_of_the_documents_leads_somewhere() {
     let root = common::root();
-    let docs = std::fs::read_dir(root.join("docs")).unwrap().map(|e| e.unwrap().path());
-    let pages: Vec<_> =
-        docs.chain(["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|name| root.join(name))).collect();
+    let docs = std::fs::read_dir(root.join("docs"))
+        .unwrap()
+        .map(|e| e.unwrap().path());
+    let pages: Vec<_> = docs
+        .chain(["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|name| root.join(name)))
+        .collect();
     let (mut wrong, mut links) = (Vec::new(), 0);
-    for page in pages.iter().filter(|p| p.extension().is_some_and(|e| e == "md")) {
+    for page in pages
+        .iter()
+        .filter(|p| p.extension().is_some_and(|e| e == "md"))
+    {
         let text = std::fs::read_to_string(page).unwrap();
-        for link in text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|parts| parts.0) {
+        for link in text
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split_once(')'))
+            .map(|parts| parts.0)
+        {
             let (file, heading) = link.split_once('#').unwrap_or((link, ""));
             if file.contains("://") || link.contains(' ') {
                 continue;
             }
             links += 1;
-            let target = if file.is_empty() { page.clone() } else { page.parent().unwrap().join(file) };
+            let target = if file.is_empty() {
+                page.clone()
+            } else {
+                page.parent().unwrap().join(file)
+            };
             let found = match (target.exists(), heading) {
                 (there, "") => there,
                 (false, _) => false,
                 (true, _) => {
                     let text = std::fs::read_to_string(&target).unwrap();
-                    text.lines().any(|l| l.starts_with('#') && anchor(l.trim_start_matches('#').trim()) == heading)
+                    text.lines().any(|l| {
+                        l.starts_with('#') && anchor(l.trim_start_matches('#').trim()) == heading
+                    })
                 }
             };
             if !found {
@@ -194,6 +254,10 @@ fn every_link_of_the_documents_leads_somewhere() {
 
 #[test]
 fn the_check_sees_groups_and_paths() {
-    let text = "use crate::{graph::{plan, run}, lab};\n// crate::window\nlet a = crate::files::read();";
-    assert_eq!(named(text).into_iter().collect::<Vec<_>>(), ["files", "graph", "lab"]);
+    let text =
+        "use crate::{graph::{plan, run}, lab};\n// crate::window\nlet a = crate::files::read();";
+    assert_eq!(
+        named(text).into_iter().collect::<Vec<_>>(),
+        ["files", "graph", "lab"]
+    );
 }

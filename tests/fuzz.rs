@@ -61,12 +61,13 @@ struct Graphs {
 
 /// Reads a file as the program would; what it says where it refuses it. `thorough`: an accepted scene is exported too.
 fn read(kind: Kind, path: &Path, graphs: &Graphs, thorough: bool) -> Result<(), String> {
-    let told =
-        |errors: Vec<conelab::diagnostics::Diagnostic>| errors.iter().map(ToString::to_string).collect::<String>();
+    let told = |errors: Vec<conelab::diagnostics::Diagnostic>| {
+        errors.iter().map(ToString::to_string).collect::<String>()
+    };
     match kind {
         Kind::Scene => {
-            let scene =
-                Scene::open(&path.to_string_lossy(), &|_, _| ControlFlow::Continue(())).map_err(|e| e.to_string())?;
+            let scene = Scene::open(&path.to_string_lossy(), &|_, _| ControlFlow::Continue(()))
+                .map_err(|e| e.to_string())?;
             drop(scene.summary());
             let warnings = scene.warnings.join("\n");
             if warnings.contains("gave up") {
@@ -79,63 +80,107 @@ fn read(kind: Kind, path: &Path, graphs: &Graphs, thorough: bool) -> Result<(), 
             wrong.map_or(Ok(()), |wrong| Err(format!("{HOLDS}{wrong}")))
         }
         Kind::Graph => {
-            let folders = Folders { passes: root().join("passes"), shaders: root().join("shaders") };
+            let folders = Folders {
+                passes: root().join("passes"),
+                shaders: root().join("shaders"),
+            };
             load(path, &folders).map(drop).map_err(told)
         }
         Kind::Experiment => {
             let experiment = Experiment::read(path).map_err(told)?;
-            experiment.params_over(&graphs.method.params).map(drop).map_err(|e| e.to_string())
+            experiment
+                .params_over(&graphs.method.params)
+                .map(drop)
+                .map_err(|e| e.to_string())
         }
         Kind::Sweep => {
             let sweep = Sweep::read(path).map_err(told)?;
-            (0..sweep.len().min(8)).try_for_each(|i| sweep.point(i).map(drop)).map_err(told)
+            (0..sweep.len().min(8))
+                .try_for_each(|i| sweep.point(i).map(drop))
+                .map_err(told)
         }
         Kind::Suite => Suite::read(path).map(drop).map_err(told),
         Kind::Path => {
             let path = CameraPath::read(path).map_err(told)?;
-            [-1.0, 0.0, 0.5, 1e9].iter().for_each(|time| assert!(path.at(*time).fov_y > 0.0));
+            [-1.0, 0.0, 0.5, 1e9]
+                .iter()
+                .for_each(|time| assert!(path.at(*time).fov_y > 0.0));
             Ok(())
         }
         Kind::Capture => {
             let folder = path.parent().unwrap();
             let manifest = capture::Manifest::read(folder).map_err(|e| e.to_string())?;
             assert!(capture::changes(folder, &manifest).len() <= manifest.files.len() + 2);
-            assert!(capture::list(folder.parent().unwrap()).iter().any(|s| s.folder == folder));
+            assert!(
+                capture::list(folder.parent().unwrap())
+                    .iter()
+                    .any(|s| s.folder == folder)
+            );
             Experiment::read(&folder.join("experiment.ron")).map_err(told)?;
-            let folders = Folders { passes: folder.join("graph/passes"), shaders: folder.join("graph/shaders") };
-            load(&folders.passes.join("graph.ron"), &folders).map(drop).map_err(told)
+            let folders = Folders {
+                passes: folder.join("graph/passes"),
+                shaders: folder.join("graph/shaders"),
+            };
+            load(&folders.passes.join("graph.ron"), &folders)
+                .map(drop)
+                .map_err(told)
         }
         Kind::Reference => {
             let read = reference::read(path.parent().unwrap(), seeds::REFERENCE, &graphs.reference);
-            let Some(reference) = read.map_err(|e| e.to_string())? else { return Err("no sums".into()) };
+            let Some(reference) = read.map_err(|e| e.to_string())? else {
+                return Err("no sums".into());
+            };
             let size = reference.parts.values().all(|p| p.mean.rgb.len() == 12);
-            if size && reference.samples == 32 { Ok(()) } else { Err(format!("{HOLDS}it has other samples")) }
+            if size && reference.samples == 32 {
+                Ok(())
+            } else {
+                Err(format!("{HOLDS}it has other samples"))
+            }
         }
         Kind::Module => match read_module(&std::fs::read(path).unwrap(), Stage::Fragment) {
-            Some((words, _)) if check_sizes(&words, &[]).is_err() => Err(format!("{HOLDS}it is too large")),
+            Some((words, _)) if check_sizes(&words, &[]).is_err() => {
+                Err(format!("{HOLDS}it is too large"))
+            }
             Some((words, _)) => {
                 drop(strip_outputs(&words, &[0]));
                 Ok(())
             }
             None => Err("no module".into()),
         },
-        Kind::Points => sweep::collect(&[path.parent().unwrap().into()]).map(drop).map_err(|e| e.to_string()),
-        Kind::Times => bench::Record::read(path).map(drop).map_err(|e| e.to_string()),
-        Kind::Picture => conelab::results::picture::read_linear(path).map(drop).map_err(|e| e.to_string()),
+        Kind::Points => sweep::collect(&[path.parent().unwrap().into()])
+            .map(drop)
+            .map_err(|e| e.to_string()),
+        Kind::Times => bench::Record::read(path)
+            .map(drop)
+            .map_err(|e| e.to_string()),
+        Kind::Picture => conelab::results::picture::read_linear(path)
+            .map(drop)
+            .map_err(|e| e.to_string()),
     }
 }
 
 /// Bytes of the files in a folder.
 fn bytes_of(folder: &Path) -> usize {
     let entries = std::fs::read_dir(folder).unwrap().flatten();
-    entries.filter_map(|e| e.metadata().ok()).filter(|m| m.is_file()).map(|m| m.len() as usize).sum()
+    entries
+        .filter_map(|e| e.metadata().ok())
+        .filter(|m| m.is_file())
+        .map(|m| m.len() as usize)
+        .sum()
 }
 
 /// Largest memory that this process has had, bytes.
 fn peak_memory() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:")).unwrap_or_default();
-    line.trim().trim_end_matches(" kB").parse::<u64>().unwrap_or(0) << 10
+    let line = status
+        .lines()
+        .find_map(|l| l.strip_prefix("VmHWM:"))
+        .unwrap_or_default();
+    line.trim()
+        .trim_end_matches(" kB")
+        .parse::<u64>()
+        .unwrap_or(0)
+        << 10
 }
 
 /// What all threads share.
@@ -154,7 +199,9 @@ fn one(run: &Run, seed: &Seed, folder: &Path, bytes: &[u8], number: usize, graph
     std::fs::write(folder.join(seed.mutated), bytes).unwrap();
     let begun = Instant::now();
     let thorough = number.is_multiple_of(EXPORTED);
-    let result = catch_unwind(AssertUnwindSafe(|| read(seed.kind, &folder.join(seed.opened), graphs, thorough)));
+    let result = catch_unwind(AssertUnwindSafe(|| {
+        read(seed.kind, &folder.join(seed.opened), graphs, thorough)
+    }));
     let name = format!("{} in {}", seed.mutated, seed.opened);
     let mut wrong = None;
     let mut ok = false;
@@ -182,7 +229,10 @@ fn one(run: &Run, seed: &Seed, folder: &Path, bytes: &[u8], number: usize, graph
     *count = (count.0 + 1, count.1 + usize::from(ok));
     if let Some(wrong) = wrong {
         let kept = keep(seed, bytes, number);
-        run.failures.lock().unwrap().push(format!("input {number}, {name}: {wrong}; kept as {}", kept.display()));
+        run.failures.lock().unwrap().push(format!(
+            "input {number}, {name}: {wrong}; kept as {}",
+            kept.display()
+        ));
     }
 }
 
@@ -197,17 +247,38 @@ fn keep(seed: &Seed, bytes: &[u8], number: usize) -> PathBuf {
 #[test]
 fn mutated_files_are_read_or_refused() {
     let asked = number("CONELAB_FUZZ");
-    let (inputs, first) = (asked.unwrap_or(INPUTS), number("CONELAB_FUZZ_SEED").unwrap_or(0));
+    let (inputs, first) = (
+        asked.unwrap_or(INPUTS),
+        number("CONELAB_FUZZ_SEED").unwrap_or(0),
+    );
     let seeds = seeds::all();
-    let folders = Folders { passes: root().join("passes"), shaders: root().join("shaders") };
+    let folders = Folders {
+        passes: root().join("passes"),
+        shaders: root().join("shaders"),
+    };
     let graph = |name: &str| Arc::new(load(&folders.passes.join(name), &folders).unwrap());
-    let graphs = Graphs { method: graph("rays.ron"), reference: graph("reference.ron") };
+    let graphs = Graphs {
+        method: graph("rays.ron"),
+        reference: graph("reference.ron"),
+    };
     let whole = tempfile::tempdir().unwrap();
     seeds::write(whole.path());
-    for Seed { kind, opened, mutated, .. } in &seeds {
-        assert_eq!(read(*kind, &whole.path().join(opened), &graphs, true), Ok(()), "{mutated}, as it is");
+    for Seed {
+        kind,
+        opened,
+        mutated,
+        ..
+    } in &seeds
+    {
+        assert_eq!(
+            read(*kind, &whole.path().join(opened), &graphs, true),
+            Ok(()),
+            "{mutated}, as it is"
+        );
     }
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(8);
+    let threads = std::thread::available_parallelism()
+        .map_or(1, usize::from)
+        .min(8);
     let run = Run {
         next: AtomicUsize::new(0),
         busy: (0..threads).map(|_| AtomicU64::new(0)).collect(),
@@ -244,18 +315,35 @@ fn mutated_files_are_read_or_refused() {
         while run.busy.iter().any(|b| b.load(Relaxed) != u64::MAX) {
             std::thread::sleep(Duration::from_millis(50));
             let now = begun.elapsed().as_millis() as u64;
-            let hangs = |b: &AtomicU64| (1..u64::MAX).contains(&b.load(Relaxed)) && b.load(Relaxed) + 60_000 < now;
+            let hangs = |b: &AtomicU64| {
+                (1..u64::MAX).contains(&b.load(Relaxed)) && b.load(Relaxed) + 60_000 < now
+            };
             if run.busy.iter().any(hangs) {
-                eprintln!("an input up to number {} takes more than a minute", first + run.next.load(Relaxed));
+                eprintln!(
+                    "an input up to number {} takes more than a minute",
+                    first + run.next.load(Relaxed)
+                );
                 std::process::abort();
             }
         }
     });
     let counts = run.counts.into_inner().unwrap();
-    let (all, read) = counts.values().fold((0, 0), |sum, c| (sum.0 + c.0, sum.1 + c.1));
-    eprintln!("{all} inputs from {first} on in {:.0?}, {read} read, peak {} MB", begun.elapsed(), peak_memory() >> 20);
-    counts.iter().for_each(|(name, (all, read))| eprintln!("  {name}: {read} of {all} read"));
-    run.caught.into_inner().unwrap().iter().for_each(|(what, n)| eprintln!("  {n} times a reader gave up: {what}"));
+    let (all, read) = counts
+        .values()
+        .fold((0, 0), |sum, c| (sum.0 + c.0, sum.1 + c.1));
+    eprintln!(
+        "{all} inputs from {first} on in {:.0?}, {read} read, peak {} MB",
+        begun.elapsed(),
+        peak_memory() >> 20
+    );
+    counts
+        .iter()
+        .for_each(|(name, (all, read))| eprintln!("  {name}: {read} of {all} read"));
+    run.caught
+        .into_inner()
+        .unwrap()
+        .iter()
+        .for_each(|(what, n)| eprintln!("  {n} times a reader gave up: {what}"));
     let failures = run.failures.into_inner().unwrap();
     assert!(failures.is_empty(), "{}", failures.join("\n"));
     assert!(all > 100, "only {all} inputs in {:?}", begun.elapsed());

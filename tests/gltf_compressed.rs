@@ -29,14 +29,24 @@ fn corners(scene: &Scene) -> (BTreeMap<(u32, u32), Corner>, Triangles) {
     let instance = &scene.instances[0];
     let mesh = &scene.meshes[instance.mesh as usize];
     let place = |i: u32| {
-        let [u, v] = mesh.vertices[i as usize].uv.map(|c| (c * 8.0).round() as u32);
+        let [u, v] = mesh.vertices[i as usize]
+            .uv
+            .map(|c| (c * 8.0).round() as u32);
         (u, v)
     };
     let corner = |&i: &u32| {
         let v = &mesh.vertices[i as usize];
         let position = instance.transform.transform_point3(Vec3::from(v.position));
         let (normal, uv, color) = (Vec3::from(v.normal), Vec2::from(v.uv), Vec4::from(v.color));
-        (place(i), Corner { position, normal, uv, color })
+        (
+            place(i),
+            Corner {
+                position,
+                normal,
+                uv,
+                color,
+            },
+        )
     };
     let triangle = |indices: &[u32]| {
         let mut places = [0, 1, 2].map(|k| place(indices[k]));
@@ -44,7 +54,10 @@ fn corners(scene: &Scene) -> (BTreeMap<(u32, u32), Corner>, Triangles) {
         places.rotate_left(first);
         places
     };
-    (mesh.indices.iter().map(corner).collect(), mesh.indices.chunks(3).map(triangle).collect())
+    (
+        mesh.indices.iter().map(corner).collect(),
+        mesh.indices.chunks(3).map(triangle).collect(),
+    )
 }
 
 /// Largest distances between two scenes' corners: positions, normals, coordinates and colours.
@@ -76,6 +89,9 @@ fn compressed_files_hold_the_same_as_plain_ones() {
         ("float.glb", [0.000_11, 0.000_2, 0.000_11, 0.009]),
     ] {
         let found = distances(&plain, &sheet(name));
-        assert!(found.iter().zip(most).all(|(found, most)| *found <= most), "{name}: {found:?} of {most:?}");
+        assert!(
+            found.iter().zip(most).all(|(found, most)| *found <= most),
+            "{name}: {found:?} of {most:?}"
+        );
     }
 }

@@ -117,7 +117,10 @@ struct Bench {
 }
 
 fn bench() -> Bench {
-    let mut bench = Bench { folder: tempfile::tempdir().unwrap(), device: any_device() };
+    let mut bench = Bench {
+        folder: tempfile::tempdir().unwrap(),
+        device: any_device(),
+    };
     bench.device.name = String::from("Test GPU");
     for (name, text) in [
         ("passes/graph.ron", GRAPH),
@@ -151,7 +154,11 @@ impl Bench {
     #[track_caller]
     fn edit(self, name: &str, old: &str, new: &str) -> Bench {
         let text = std::fs::read_to_string(self.path(name)).unwrap();
-        assert_eq!(text.matches(old).count(), 1, "'{old}' stands once in {name}");
+        assert_eq!(
+            text.matches(old).count(),
+            1,
+            "'{old}' stands once in {name}"
+        );
         self.write(name, &text.replace(old, new));
         self
     }
@@ -164,14 +171,25 @@ impl Bench {
     /// Everything said between reading the experiment and having the plan of a frame.
     fn findings(&self) -> String {
         let list = self.check().unwrap_or_else(|errors| errors);
-        let text = list.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+        let text = list
+            .iter()
+            .map(ToString::to_string)
+            .collect::<Vec<_>>()
+            .join("\n");
         text.replace(&format!("{}/", self.folder.path().display()), "")
     }
 
     fn check(&self) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
-        let home = Workspace { root: self.folder.path().to_path_buf(), cache: None };
+        let home = Workspace {
+            root: self.folder.path().to_path_buf(),
+            cache: None,
+        };
         let experiment = Experiment::read(&self.path("configs/run.ron"))?;
-        let Loaded { graph, linked, warnings } = home.load(&experiment.graph)?;
+        let Loaded {
+            graph,
+            linked,
+            warnings,
+        } = home.load(&experiment.graph)?;
         if let Some(mistake) = conelab::measure::oracle::mistake(&graph) {
             return Err(vec![mistake]);
         }
@@ -179,8 +197,15 @@ impl Bench {
             LabError::Input(list) => list,
             other => panic!("{other}"),
         })?;
-        let scene = Scene::open(&experiment.scene, &|_, _| std::ops::ControlFlow::Continue(())).unwrap();
-        let set = Evaluated::new(&graph, &params, environment(&scene, experiment.size, &self.device));
+        let scene = Scene::open(&experiment.scene, &|_, _| {
+            std::ops::ControlFlow::Continue(())
+        })
+        .unwrap();
+        let set = Evaluated::new(
+            &graph,
+            &params,
+            environment(&scene, experiment.size, &self.device),
+        );
         let wanted: Vec<String> = graph.output.iter().chain(&graph.outputs).cloned().collect();
         plan(&set, &linked, &wanted, &self.device)?;
         Ok(warnings)
@@ -199,30 +224,55 @@ fn a_graph_pins_what_it_declares() {
         "    output: \"picture\",",
         "    output: \"picture\",\n    pinned: { \"cels\": \"Cells\", \"level\": \"\" },",
     );
-    assert!(said.contains("no parameter 'cels' to pin") && said.contains("did you mean 'cells'?"), "{said}");
+    assert!(
+        said.contains("no parameter 'cels' to pin") && said.contains("did you mean 'cells'?"),
+        "{said}"
+    );
     assert!(said.contains("'level' is pinned without a title"), "{said}");
-    let edit = ("Float(name: \"level\", ", "Float(name: \"level\", when: \"methd == fast\", ");
+    let edit = (
+        "Float(name: \"level\", ",
+        "Float(name: \"level\", when: \"methd == fast\", ",
+    );
     let said = bench().edit("passes/shared.ron", edit.0, edit.1).findings();
-    assert!(said.contains("unknown variable 'methd'") && said.contains("did you mean 'method'?"), "{said}");
+    assert!(
+        said.contains("unknown variable 'methd'") && said.contains("did you mean 'method'?"),
+        "{said}"
+    );
 }
 
 #[test]
 fn a_graph_is_read_again_when_one_of_its_files_has_changed() {
-    let bench =
-        bench().edit("passes/graph.ron", "    output:", "    modules: { \"lamp\": \"light.glsl\" },\n    output:");
-    let home = Workspace { root: bench.folder.path().to_path_buf(), cache: None };
+    let bench = bench().edit(
+        "passes/graph.ron",
+        "    output:",
+        "    modules: { \"lamp\": \"light.glsl\" },\n    output:",
+    );
+    let home = Workspace {
+        root: bench.folder.path().to_path_buf(),
+        cache: None,
+    };
     let read = || home.read("graph.ron");
     let first = read().unwrap();
     assert!(Arc::ptr_eq(&first, &read().unwrap()), "nothing has changed");
     // A shader is no part of it, but whether the file of a module is there.
     let bench = bench.edit("shaders/light.glsl", "2.0", "3.0");
-    assert!(Arc::ptr_eq(&first, &read().unwrap()), "a shader has changed");
+    assert!(
+        Arc::ptr_eq(&first, &read().unwrap()),
+        "a shader has changed"
+    );
     let bench = bench.edit("passes/shared.ron", "default: 0.5", "default: 0.75");
     let second = read().unwrap();
-    assert_eq!([&first, &second].map(|g| g.params.get("level").unwrap().to_string()), ["0.5", "0.75"]);
+    assert_eq!(
+        [&first, &second].map(|g| g.params.get("level").unwrap().to_string()),
+        ["0.5", "0.75"]
+    );
     let gone = bench.path("shaders/light.glsl");
     std::fs::rename(&gone, gone.with_extension("gone")).unwrap();
-    assert!(read().unwrap_err()[0].message.contains("no shader file 'light.glsl'"));
+    assert!(
+        read().unwrap_err()[0]
+            .message
+            .contains("no shader file 'light.glsl'")
+    );
     std::fs::rename(gone.with_extension("gone"), &gone).unwrap();
     std::fs::remove_file(bench.path("passes/shared.ron")).unwrap();
     assert!(read().is_err(), "an include is gone");
@@ -230,14 +280,32 @@ fn a_graph_is_read_again_when_one_of_its_files_has_changed() {
 
 #[test]
 fn a_part_of_the_light_is_a_texture_or_says_more() {
-    let parts =
-        |text: &str| graph("    output: \"picture\",", &format!("    output: \"picture\",\n    parts: {{ {text} }},"));
-    assert_eq!(parts("\"total\": \"picture\", \"lamp\": (texture: \"picture\", kind: direct, focus: true)"), "");
+    let parts = |text: &str| {
+        graph(
+            "    output: \"picture\",",
+            &format!("    output: \"picture\",\n    parts: {{ {text} }},"),
+        )
+    };
+    assert_eq!(
+        parts(
+            "\"total\": \"picture\", \"lamp\": (texture: \"picture\", kind: direct, focus: true)"
+        ),
+        ""
+    );
     let said = parts("\"total\": (texture: \"pictur\"), \"lamp\": \"depht\"");
-    assert!(said.contains("graph.ron:30:33") && said.contains("did you mean 'picture'?"), "{said}");
-    assert!(said.contains("graph.ron:30:52") && said.contains("did you mean 'depth'?"), "{said}");
+    assert!(
+        said.contains("graph.ron:30:33") && said.contains("did you mean 'picture'?"),
+        "{said}"
+    );
+    assert!(
+        said.contains("graph.ron:30:52") && said.contains("did you mean 'depth'?"),
+        "{said}"
+    );
     let said = parts("\"total\": (texture: \"picture\", kind: opennes)");
-    assert!(said.contains("unknown name 'opennes'") && said.contains("did you mean 'openness'?"), "{said}");
+    assert!(
+        said.contains("unknown name 'opennes'") && said.contains("did you mean 'openness'?"),
+        "{said}"
+    );
     let said = parts("\"total\": (kind: direct)");
     assert!(said.contains("field 'texture' is missing"), "{said}");
 }
@@ -245,7 +313,9 @@ fn a_part_of_the_light_is_a_texture_or_says_more() {
 /// One mistake in a shader.
 #[track_caller]
 fn shader(name: &str, old: &str, new: &str) -> String {
-    bench().edit(&format!("shaders/{name}"), old, new).findings()
+    bench()
+        .edit(&format!("shaders/{name}"), old, new)
+        .findings()
 }
 
 /// One mistake in the experiment.
@@ -287,13 +357,23 @@ fn text_that_is_no_ron() {
 #[test]
 fn a_file_that_cannot_be_read_takes_no_other_with_it() {
     // A bracket too few, and everything that the file declares is missing where it is used.
-    let texts = SHARED
-        .replace("    params: [", "    textures: { \"shared\": (size: (4, 4), format: \"rgba8\") },\n    params: [");
+    let texts = SHARED.replace(
+        "    params: [",
+        "    textures: { \"shared\": (size: (4, 4), format: \"rgba8\") },\n    params: [",
+    );
     let texts = texts.replace("(0.0, 1.0), help", "(0.0, 1.0, help");
     let broken = bench()
         .add("passes/shared.ron", &texts)
-        .edit("passes/graph.ron", "\"cells * 16\"", "\"cells * 16 * level\"")
-        .edit("passes/graph.ron", "bind: { \"src\": (of: \"grid\"", "bind: { \"src\": (of: \"shared\"")
+        .edit(
+            "passes/graph.ron",
+            "\"cells * 16\"",
+            "\"cells * 16 * level\"",
+        )
+        .edit(
+            "passes/graph.ron",
+            "bind: { \"src\": (of: \"grid\"",
+            "bind: { \"src\": (of: \"shared\"",
+        )
         .edit("passes/graph.ron", "to: \"depth\"", "to: \"shared\"");
     assert_snapshot!(broken.findings(), @r#"
     passes/shared.ron:4:66: error: expected a comma
@@ -301,11 +381,9 @@ fn a_file_that_cannot_be_read_takes_no_other_with_it() {
         = help: one is missing before this, or a whole number has a point
     "#);
     // Not there at all. What is wrong beside it is still told.
-    let missing = bench().edit("passes/graph.ron", "shared.ron", "share.ron").edit(
-        "passes/graph.ron",
-        "clear: 1.0",
-        "clear: (1, 0)",
-    );
+    let missing = bench()
+        .edit("passes/graph.ron", "shared.ron", "share.ron")
+        .edit("passes/graph.ron", "clear: 1.0", "clear: (1, 0)");
     assert_snapshot!(missing.findings(), @r#"
     passes/graph.ron:2:15: error: cannot read it: No such file or directory (os error 2)
         |     include: ["share.ron"],
@@ -477,11 +555,24 @@ fn expressions() {
 fn choices_in_expressions() {
     let when = |text: &str| {
         let other = "help: \"How fragments are found.\"),\n        Choice(name: \"order\", options: [\"rows\", \"slices\"], help: \"Which first.\")";
-        let bench = bench().edit("passes/graph.ron", "help: \"How fragments are found.\")", other);
-        bench.edit("passes/graph.ron", "when: \"method == fast\"", &format!("when: \"{text}\"")).findings()
+        let bench = bench().edit(
+            "passes/graph.ron",
+            "help: \"How fragments are found.\")",
+            other,
+        );
+        bench
+            .edit(
+                "passes/graph.ron",
+                "when: \"method == fast\"",
+                &format!("when: \"{text}\""),
+            )
+            .findings()
     };
     assert_eq!(when("method == fast && order != slices"), "");
-    assert_eq!(when("exact != method && order == select(bright, rows, slices)"), "");
+    assert_eq!(
+        when("exact != method && order == select(bright, rows, slices)"),
+        ""
+    );
     // An option of another choice: such a comparison never holds.
     assert_snapshot!(when("method == slices"), @r#"
     passes/graph.ron:26:31: error: 'method' has no option 'slices', in 'method == slices'
@@ -541,14 +632,22 @@ fn choices_in_expressions() {
 /// Named values in the graph, one of which is used.
 #[track_caller]
 fn values(text: &str) -> String {
-    let bench =
-        bench().edit("passes/graph.ron", "    textures: {", &format!("    values: {{ {text} }},\n    textures: {{"));
-    bench.edit("passes/graph.ron", "\"cells * 16\"", "\"bytes\"").findings()
+    let bench = bench().edit(
+        "passes/graph.ron",
+        "    textures: {",
+        &format!("    values: {{ {text} }},\n    textures: {{"),
+    );
+    bench
+        .edit("passes/graph.ron", "\"cells * 16\"", "\"bytes\"")
+        .findings()
 }
 
 #[test]
 fn named_values() {
-    assert_eq!(values(r#""bytes": Int("row * 16"), "row": Float("cells / 2")"#), "");
+    assert_eq!(
+        values(r#""bytes": Int("row * 16"), "row": Float("cells / 2")"#),
+        ""
+    );
     // Circles: of one, of two beside one that only needs them.
     assert_snapshot!(values(r#""bytes": Int("max(bytes, 16)")"#), @r#"
     passes/graph.ron:9:28: error: value 'bytes' needs itself
@@ -1192,10 +1291,22 @@ fn what_no_device_can_do() {
 fn what_this_device_lacks() {
     let conservative = || {
         bench()
-            .edit("passes/graph.ron", "(name: \"scatter\", ", "(name: \"scatter\", when: \"method == exact\", ")
+            .edit(
+                "passes/graph.ron",
+                "(name: \"scatter\", ",
+                "(name: \"scatter\", when: \"method == exact\", ",
+            )
             .edit("passes/graph.ron", "when: \"method == fast\", ", "")
-            .edit("passes/graph.ron", "samples: \"4\"", "conservative: overestimate")
-            .edit("configs/run.ron", "\"level\": 0.25,", "\"method\": \"exact\",")
+            .edit(
+                "passes/graph.ron",
+                "samples: \"4\"",
+                "conservative: overestimate",
+            )
+            .edit(
+                "configs/run.ron",
+                "\"level\": 0.25,",
+                "\"method\": \"exact\",",
+            )
     };
     assert_snapshot!(conservative().findings(), @"");
     let mut without = conservative();
@@ -1224,8 +1335,13 @@ fn what_this_device_lacks() {
 
     // A buffer without a qualifier is read as long as nothing stores into it.
     let reads = |statement: &str| {
-        let buffer = "layout(std430) buffer Work { uvec3 groups; uint words[]; } work;\nvoid main() { ";
-        let mut bench = bench().edit("shaders/full.vert", "void main() { ", &format!("{buffer}{statement} "));
+        let buffer =
+            "layout(std430) buffer Work { uvec3 groups; uint words[]; } work;\nvoid main() { ";
+        let mut bench = bench().edit(
+            "shaders/full.vert",
+            "void main() { ",
+            &format!("{buffer}{statement} "),
+        );
         bench.device.features.vertex_stores = false;
         bench.findings()
     };
@@ -1305,7 +1421,11 @@ fn several_mistakes_are_told_at_once() {
         .edit("passes/graph.ron", "format: \"d32\"", "format: \"d24\"")
         .edit("passes/graph.ron", "raster: (size", "rater: (size")
         .edit("passes/graph.ron", "method == fast", "method == fats")
-        .edit("passes/graph.ron", "\"work\": (size: \"cells", "\"work\": (size: \"cell");
+        .edit(
+            "passes/graph.ron",
+            "\"work\": (size: \"cells",
+            "\"work\": (size: \"cell",
+        );
     assert_snapshot!(graph.findings(), @r#"
     passes/graph.ron:13:54: error: no format is named 'd24'
         |         "depth": (size: ("width", "height"), format: "d24"),
@@ -1336,7 +1456,11 @@ fn several_mistakes_are_told_at_once() {
         | uniform sampler4D src;
     ");
     let links = bench()
-        .edit("shaders/reduce.comp", "uniform sampler3D src;", "uniform sampler3D source;\n#define src source")
+        .edit(
+            "shaders/reduce.comp",
+            "uniform sampler3D src;",
+            "uniform sampler3D source;\n#define src source",
+        )
         .edit("shaders/paint.frag", "usampler2D count", "sampler2D count")
         .edit("passes/graph.ron", "\"last\": (of", "\"past\": (of");
     assert_snapshot!(links.findings(), @r#"
@@ -1356,8 +1480,11 @@ fn several_mistakes_are_told_at_once() {
         |             bind: { "past": (of: "picture", history: true) },
         = help: did you mean 'last'?
     "#);
-    let settings =
-        bench().edit("configs/run.ron", "\"level\": 0.25", "\"levle\": 1, \"cells\": 3, \"method\": \"exact\"");
+    let settings = bench().edit(
+        "configs/run.ron",
+        "\"level\": 0.25",
+        "\"levle\": 1, \"cells\": 3, \"method\": \"exact\"",
+    );
     assert_snapshot!(settings.findings(), @r#"
     configs/run.ron:6:9: error: no parameter 'levle' (did you mean 'level'?)
         |         "levle": 1, "cells": 3, "method": "exact",
@@ -1394,7 +1521,11 @@ fn pointers_that_point_nowhere() {
     "#);
     let two = "Vec2(name: \"cursor\", default: (-1, -1), help: \"Pixel.\"),\n        Bool(name: \"bright\"";
     let bench = bench().edit("passes/graph.ron", "Bool(name: \"bright\"", two);
-    let bench = bench.edit("passes/graph.ron", "output: \"picture\"", "pointer: \"cruser\", output: \"picture\"");
+    let bench = bench.edit(
+        "passes/graph.ron",
+        "output: \"picture\"",
+        "pointer: \"cruser\", output: \"picture\"",
+    );
     assert_snapshot!(bench.findings(), @r#"
     passes/graph.ron:30:14: error: no Vec2 parameter is named 'cruser'
         |     pointer: "cruser", output: "picture",
@@ -1405,8 +1536,12 @@ fn pointers_that_point_nowhere() {
 #[test]
 fn views_that_set_what_there_is_not() {
     let view = |set: &str| {
-        let view = format!("views: [(title: \"fast\", help: \"The fast one.\", set: {{ {set} }})],");
-        graph("output: \"picture\",", &format!("{view}\n    output: \"picture\","))
+        let view =
+            format!("views: [(title: \"fast\", help: \"The fast one.\", set: {{ {set} }})],");
+        graph(
+            "output: \"picture\",",
+            &format!("{view}\n    output: \"picture\","),
+        )
     };
     assert_eq!(view("\"method\": \"exact\", \"bright\": true"), "");
     let place = "passes/graph.ron:29:59: error: ";
@@ -1417,32 +1552,51 @@ fn views_that_set_what_there_is_not() {
         ("\"bright\": 1", "bright"),
     ] {
         let errors = view(set);
-        assert!(errors.starts_with(place) && errors.contains(said), "{errors}");
+        assert!(
+            errors.starts_with(place) && errors.contains(said),
+            "{errors}"
+        );
     }
-    let unknown = graph("output: \"picture\",", "views: [(title: \"t\", help: \"h\", sets: {})], output: \"picture\",");
+    let unknown = graph(
+        "output: \"picture\",",
+        "views: [(title: \"t\", help: \"h\", sets: {})], output: \"picture\",",
+    );
     assert!(unknown.contains("'sets'"), "{unknown}");
 }
 
 #[test]
 fn comparisons_of_what_is_not_there() {
     let with = |a: &str| {
-        let compare =
-            format!("compare: [(title: \"T\", help: \"h\", a: {{ {a} }}, b: {{}})],\n    output: \"picture\",");
+        let compare = format!(
+            "compare: [(title: \"T\", help: \"h\", a: {{ {a} }}, b: {{}})],\n    output: \"picture\","
+        );
         graph("output: \"picture\",", &compare)
     };
     let found = with("\"nothing\": 1");
-    assert!(found.contains("passes/graph.ron:29:") && found.contains("no parameter 'nothing'"), "{found}");
-    assert_eq!(with(""), "", "a comparison of the same settings is no mistake");
+    assert!(
+        found.contains("passes/graph.ron:29:") && found.contains("no parameter 'nothing'"),
+        "{found}"
+    );
+    assert_eq!(
+        with(""),
+        "",
+        "a comparison of the same settings is no mistake"
+    );
 }
 
 #[test]
 fn voxels_that_are_not_there() {
     let with = |resources: &str, settings: &str| {
         let tool = format!("\"voxels\": (resources: {{ {resources} }}, settings: [{settings}])");
-        graph("output: \"picture\",", &format!("tools: {{ {tool} }},\n    output: \"picture\","))
+        graph(
+            "output: \"picture\",",
+            &format!("tools: {{ {tool} }},\n    output: \"picture\","),
+        )
     };
     let all = |occupied: &str, borders: &str| {
-        format!(r#""occupied": "{occupied}", "color": "grid", "normal": "grid", "borders": "{borders}""#)
+        format!(
+            r#""occupied": "{occupied}", "color": "grid", "normal": "grid", "borders": "{borders}""#
+        )
     };
     // Names are checked with the graph, what they mean by the tool.
     let found = with(r#""color": "gird", "borders": "wrok""#, "");
@@ -1452,23 +1606,41 @@ fn voxels_that_are_not_there() {
     for (resources, message) in [
         (all("count", "work"), "'count' is no 3D texture"),
         (all("grid", "grid"), "'grid' is no buffer"),
-        (String::from(r#""occupied": "grid""#), "no resource 'borders'"),
+        (
+            String::from(r#""occupied": "grid""#),
+            "no resource 'borders'",
+        ),
     ] {
         let found = with(&resources, "");
-        assert!(found.contains("passes/graph.ron:29:") && found.contains(message), "{message} in {found}");
+        assert!(
+            found.contains("passes/graph.ron:29:") && found.contains(message),
+            "{message} in {found}"
+        );
     }
-    let mode = |set: &str| with(&all("grid", "work"), &format!("(title: \"T\", help: \"h\", set: {{ {set} }})"));
+    let mode = |set: &str| {
+        with(
+            &all("grid", "work"),
+            &format!("(title: \"T\", help: \"h\", set: {{ {set} }})"),
+        )
+    };
     let found = mode("\"method\": slow");
-    assert!(found.contains("passes/graph.ron:29:") && found.contains("slow"), "{found}");
+    assert!(
+        found.contains("passes/graph.ron:29:") && found.contains("slow"),
+        "{found}"
+    );
     assert_eq!(mode("\"method\": exact"), "");
 }
 
 #[test]
 fn members_that_are_not_there() {
-    let block =
-        "buffer Work { uvec3 groups; uint count; uint four[4]; vec2 place; uint one, two, three; uint words[]; } work;";
-    let right =
-        |bench: Bench| bench.edit("shaders/prepare.comp", "buffer Work { uvec3 groups; uint words[]; } work;", block);
+    let block = "buffer Work { uvec3 groups; uint count; uint four[4]; vec2 place; uint one, two, three; uint words[]; } work;";
+    let right = |bench: Bench| {
+        bench.edit(
+            "shaders/prepare.comp",
+            "buffer Work { uvec3 groups; uint words[]; } work;",
+            block,
+        )
+    };
     let with = |old: &str, new: &str| right(bench()).edit("passes/graph.ron", old, new).findings();
     let dispatch = |path: &str| with("Indirect(\"work.groups\")", &format!("Indirect({path})"));
     assert_eq!(dispatch("\"work.groups\""), "");
@@ -1511,7 +1683,10 @@ fn members_that_are_not_there() {
     "#);
     // A draw needs four.
     let draw = |path: &str| {
-        with("draw: Fullscreen,\n            raster", &format!("draw: Indirect({path}),\n            raster"))
+        with(
+            "draw: Fullscreen,\n            raster",
+            &format!("draw: Indirect({path}),\n            raster"),
+        )
     };
     assert_eq!(draw("\"work.four\""), "");
     assert_snapshot!(draw("\"work.groups\""), @r#"
@@ -1520,7 +1695,10 @@ fn members_that_are_not_there() {
     "#);
     // Checks.
     let check = |text: &str| {
-        with("output: \"picture\",", &format!("checks: [({text}, message: \"m\")],\n    output: \"picture\","))
+        with(
+            "output: \"picture\",",
+            &format!("checks: [({text}, message: \"m\")],\n    output: \"picture\","),
+        )
     };
     assert_eq!(check("field: \"work.four[3]\""), "");
     assert_snapshot!(check("field: \"work.place.x\""), @r#"
@@ -1553,15 +1731,29 @@ fn members_that_are_not_there() {
     passes/graph.ron:16:35: error: count 'cells - 64' is 0, and must be at least 1
         |         "work": (size: Struct(of: "cells - 64"), indirect: true),
     "#);
-    let fixed = right(bench()).edit("shaders/prepare.comp", " uint words[]; }", " uint words[7]; }");
-    assert_eq!(fixed.edit("passes/graph.ron", "\"cells * 16\"", "Struct").findings(), "");
-    let fixed = right(bench()).edit("shaders/prepare.comp", " uint words[]; }", " uint words[7]; }");
+    let fixed = right(bench()).edit(
+        "shaders/prepare.comp",
+        " uint words[]; }",
+        " uint words[7]; }",
+    );
+    assert_eq!(
+        fixed
+            .edit("passes/graph.ron", "\"cells * 16\"", "Struct")
+            .findings(),
+        ""
+    );
+    let fixed = right(bench()).edit(
+        "shaders/prepare.comp",
+        " uint words[]; }",
+        " uint words[7]; }",
+    );
     assert_snapshot!(fixed.edit("passes/graph.ron", "\"cells * 16\"", "Struct(of: 4)").findings(), @r#"
     passes/graph.ron:16:24: error: 'work' does not end in an array without a length: `Struct` is its size
         |         "work": (size: Struct(of: 4), indirect: true),
     "#);
     // Nobody declares it.
-    let unknown = "\"work\": (size: \"cells * 16\", indirect: true),\n        \"other\": (size: Struct),";
+    let unknown =
+        "\"work\": (size: \"cells * 16\", indirect: true),\n        \"other\": (size: Struct),";
     assert_snapshot!(with("\"work\": (size: \"cells * 16\", indirect: true),", unknown), @r#"
     passes/graph.ron:17:25: error: no shader declares 'other', so its struct has no size
         |         "other": (size: Struct),
@@ -1582,7 +1774,16 @@ fn members_that_are_not_there() {
         = help: here `uint number` at byte 12, there `uint count` at byte 12
     ");
     // As long as nothing names a member, they may see it as they like.
-    assert_eq!(twice.edit("passes/graph.ron", "Indirect(\"work.groups\")", "Groups(1, 1, 1)").findings(), "");
+    assert_eq!(
+        twice
+            .edit(
+                "passes/graph.ron",
+                "Indirect(\"work.groups\")",
+                "Groups(1, 1, 1)"
+            )
+            .findings(),
+        ""
+    );
 }
 
 #[test]
@@ -1595,7 +1796,11 @@ layout(std430) writeonly buffer Work { uvec3 groups; uint count; Row list[8]; Ro
                 (name: \"number\"),
                 (name: \"where\", of: \"place\", unit: \"m\"),
             ])";
-        assert_eq!(right.matches(old).count(), 1, "'{old}' stands once in the table");
+        assert_eq!(
+            right.matches(old).count(),
+            1,
+            "'{old}' stands once in the table"
+        );
         bench()
             .edit(
                 "shaders/prepare.comp",
@@ -1605,12 +1810,20 @@ layout(std430) writeonly buffer Work { uvec3 groups; uint count; Row list[8]; Ro
             .edit(
                 "passes/graph.ron",
                 "output: \"picture\",",
-                &format!("tables: [{}],\n    output: \"picture\",", right.replace(old, new)),
+                &format!(
+                    "tables: [{}],\n    output: \"picture\",",
+                    right.replace(old, new)
+                ),
             )
             .findings()
     };
     assert_eq!(table("title", "title"), "");
-    assert_eq!(table("\"work.list\"", "\"work.words\"").matches("a row has no member").count(), 1);
+    assert_eq!(
+        table("\"work.list\"", "\"work.words\"")
+            .matches("a row has no member")
+            .count(),
+        1
+    );
     assert_snapshot!(table("\"work.list\"", "\"work.lost\""), @r#"
     passes/graph.ron:29:41: error: 'work' has no member 'lost'
         |     tables: [(rows: "work.count", list: "work.lost", title: "Work", help: "Rows.",
@@ -1658,9 +1871,11 @@ layout(std430) writeonly buffer Work { uvec3 groups; uint count; Row list[8]; Ro
         |     tables: [(rows: "work.count", list: "work.list", title: "Work", help: "",
     "#);
     let words = |more: &str| {
-        let list =
-            "(list: \"work.words\", rows: \"work.groups.x\", title: \"T\", help: \"h\", columns: [(name: \"n\")])";
-        graph("output: \"picture\",", &format!("tables: [{list}{more}],\n    output: \"picture\","))
+        let list = "(list: \"work.words\", rows: \"work.groups.x\", title: \"T\", help: \"h\", columns: [(name: \"n\")])";
+        graph(
+            "output: \"picture\",",
+            &format!("tables: [{list}{more}],\n    output: \"picture\","),
+        )
     };
     assert_eq!(words(""), "");
     assert_snapshot!(words(", (list: \"work.words\", rows: \"work.groups.y\", title: \"T\", help: \"h\", columns: [])"), @r#"
@@ -1675,8 +1890,14 @@ layout(std430) writeonly buffer Work { uvec3 groups; uint count; Row list[8]; Ro
 fn groups_of_passes() {
     let fill = "(name: \"fill\", shaders: [\"fill.comp\"], dispatch: Indirect(\"work.groups\")),";
     let group = |text: &str| graph(fill, &text.replace("FILL", fill));
-    assert_eq!(group("(stage: \"s\", when: \"method == fast\", passes: [FILL]),"), "");
-    assert_eq!(group("(passes: [(passes: [FILL]), (when: \"bright\", passes: [])]),"), "");
+    assert_eq!(
+        group("(stage: \"s\", when: \"method == fast\", passes: [FILL]),"),
+        ""
+    );
+    assert_eq!(
+        group("(passes: [(passes: [FILL]), (when: \"bright\", passes: [])]),"),
+        ""
+    );
     assert_snapshot!(group("(name: \"s\", passes: [FILL]),"), @r#"
     passes/graph.ron:20:10: error: unknown field 'name'
         |         (name: "s", passes: [(name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work.groups")),]),
@@ -1699,7 +1920,10 @@ fn groups_of_passes() {
 #[test]
 fn what_settles() {
     let settles = |pass: &str, frames: &str| {
-        graph(&format!("(name: \"{pass}\","), &format!("(name: \"{pass}\", settles: \"{frames}\","))
+        graph(
+            &format!("(name: \"{pass}\","),
+            &format!("(name: \"{pass}\", settles: \"{frames}\","),
+        )
     };
     assert_eq!(settles("paint", "cells / 16"), "");
     assert_snapshot!(settles("paint", "cells - 64"), @r#"
@@ -1720,15 +1944,41 @@ fn what_settles() {
     "#);
     // Two passes rest together, and another reads what they keep before both are through.
     let raster = "draw: Fullscreen, raster: (size: (\"cells\", \"cells\"), samples: \"4\")),";
-    let scatter = |name: &str| format!("(name: \"{name}\", shaders: [\"full.vert\", \"scatter.frag\"], {raster}");
-    let group = format!("    passes: [(settles: \"4\", passes: [{} {}])],\n)", scatter("scatter"), scatter("again"));
-    let old = GRAPH.lines().position(|l| l.contains("\"scatter\"")).unwrap();
-    let old: String = GRAPH.lines().skip(old).take(2).map(|l| format!("{l}\n")).collect();
+    let scatter = |name: &str| {
+        format!("(name: \"{name}\", shaders: [\"full.vert\", \"scatter.frag\"], {raster}")
+    };
+    let group = format!(
+        "    passes: [(settles: \"4\", passes: [{} {}])],\n)",
+        scatter("scatter"),
+        scatter("again")
+    );
+    let old = GRAPH
+        .lines()
+        .position(|l| l.contains("\"scatter\""))
+        .unwrap();
+    let old: String = GRAPH
+        .lines()
+        .skip(old)
+        .take(2)
+        .map(|l| format!("{l}\n"))
+        .collect();
     let between = bench()
-        .edit("passes/graph.ron", "views: [\"r32i\"]),", "views: [\"r32i\"], history: true),")
+        .edit(
+            "passes/graph.ron",
+            "views: [\"r32i\"]),",
+            "views: [\"r32i\"], history: true),",
+        )
         .edit("passes/graph.ron", &old, "")
-        .edit("passes/shared.ron", "    ],\n)", &format!("    ],\n{group}"))
-        .edit("passes/graph.ron", "(name: \"paint\",", "(name: \"paint\", after: \"scatter\",");
+        .edit(
+            "passes/shared.ron",
+            "    ],\n)",
+            &format!("    ],\n{group}"),
+        )
+        .edit(
+            "passes/graph.ron",
+            "(name: \"paint\",",
+            "(name: \"paint\", after: \"scatter\",",
+        );
     assert_snapshot!(between.findings(), @r#"
     passes/graph.ron:23:16: error: 'count' is read here before pass 'again', which settles, is through
         |         (name: "paint", after: "scatter", when: "method == fast", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
@@ -1738,7 +1988,10 @@ fn what_settles() {
 #[test]
 fn what_is_transient() {
     let transient = |old: &str| graph(&format!("{old}),"), &format!("{old}, transient: true),"));
-    assert_eq!(transient("\"work\": (size: \"cells * 16\", indirect: true"), "");
+    assert_eq!(
+        transient("\"work\": (size: \"cells * 16\", indirect: true"),
+        ""
+    );
     assert_eq!(transient("format: \"d32\""), "");
     assert_snapshot!(transient("format: \"r32ui\", views: [\"r32i\"]"), @r#"
     passes/graph.ron:23:16: error: 'count' is transient, and pass 'scatter' reads it before it is written
@@ -1760,9 +2013,21 @@ fn aliases_and_samplers() {
         let section = format!("    {section}: {{ {text} }},\n    textures: {{");
         bench()
             .edit("passes/graph.ron", "    textures: {", &section)
-            .edit("shaders/paint.frag", "uniform sampler2D last;", "uniform sampler2D ghost;")
-            .edit("shaders/paint.frag", "texelFetch(last,", "texelFetch(ghost,")
-            .edit("passes/graph.ron", "            bind: { \"last\": (of: \"picture\", history: true) },\n", "")
+            .edit(
+                "shaders/paint.frag",
+                "uniform sampler2D last;",
+                "uniform sampler2D ghost;",
+            )
+            .edit(
+                "shaders/paint.frag",
+                "texelFetch(last,",
+                "texelFetch(ghost,",
+            )
+            .edit(
+                "passes/graph.ron",
+                "            bind: { \"last\": (of: \"picture\", history: true) },\n",
+                "",
+            )
             .findings()
     };
     let alias = |text: &str| with("aliases", text);
@@ -1839,8 +2104,16 @@ fn aliases_and_samplers() {
     "#);
     // Where only a texture will do.
     let target = bench()
-        .edit("passes/graph.ron", "    textures: {", &format!("    aliases: {{ {right} }},\n    textures: {{"))
-        .edit("passes/graph.ron", "color: [(to: \"picture\"", "color: [(to: \"ghost\"");
+        .edit(
+            "passes/graph.ron",
+            "    textures: {",
+            &format!("    aliases: {{ {right} }},\n    textures: {{"),
+        )
+        .edit(
+            "passes/graph.ron",
+            "color: [(to: \"picture\"",
+            "color: [(to: \"ghost\"",
+        );
     assert_snapshot!(target.findings(), @r#"
     passes/graph.ron:28:26: error: 'ghost' is an alias or sampler, which passes bind: name a texture
         |             color: [(to: "ghost", clear: (0, 0, 0, 1))], depth: (to: "depth", clear: 1.0)),
@@ -1849,7 +2122,12 @@ fn aliases_and_samplers() {
 
 #[test]
 fn sizes_by_a_word() {
-    let size = |text: &str| graph("\"depth\": (size: (\"width\", \"height\")", &format!("\"depth\": (size: {text}"));
+    let size = |text: &str| {
+        graph(
+            "\"depth\": (size: (\"width\", \"height\")",
+            &format!("\"depth\": (size: {text}"),
+        )
+    };
     assert_eq!(size("Screen"), "");
     assert_eq!(size("Like(\"picture\")"), "");
     assert_snapshot!(size("Scren"), @r#"
@@ -1885,16 +2163,35 @@ fn structs_of_the_scene_that_the_program_fills_otherwise() {
                 "uniform writeonly image3D grid;",
                 &format!("uniform writeonly image3D grid;\n{block}"),
             )
-            .edit("shaders/fill.comp", "{ imageStore", &format!("{{ if ({used} == 7u) return; imageStore"))
+            .edit(
+                "shaders/fill.comp",
+                "{ imageStore",
+                &format!("{{ if ({used} == 7u) return; imageStore"),
+            )
             .findings()
     };
     let light = |members: &str, used: &str| {
         let lights = "layout(std430) readonly buffer Lights { Light lights[]; } lights;";
-        declares(&format!("struct Light {{\n{members}\n}};\n{lights}"), &format!("lights.lights[0].{used}"))
+        declares(
+            &format!("struct Light {{\n{members}\n}};\n{lights}"),
+            &format!("lights.lights[0].{used}"),
+        )
     };
     // A prefix is enough, and names are free where they are not the program's.
-    assert_eq!(declares("uniform Camera { mat4 view; mat4 lens; } camera;", "uint(camera.view[0].x)"), "");
-    assert_eq!(declares("readonly buffer Draws { uint words[]; } draws;", "draws.words[3]"), "");
+    assert_eq!(
+        declares(
+            "uniform Camera { mat4 view; mat4 lens; } camera;",
+            "uint(camera.view[0].x)"
+        ),
+        ""
+    );
+    assert_eq!(
+        declares(
+            "readonly buffer Draws { uint words[]; } draws;",
+            "draws.words[3]"
+        ),
+        ""
+    );
     let right = "vec3 place;\nuint kind;\nvec4 rest[3];";
     assert_eq!(light(right, "kind"), "");
     assert_snapshot!(light("uint kind;\nvec3 position;\nvec4 rest[2];", "kind"), @r"

@@ -30,11 +30,15 @@ impl Bench {
     fn new(graph: &str, shaders: &[(&str, &str)]) -> Bench {
         let bench = Bench(tempfile::tempdir().unwrap());
         bench.write("passes/graph.ron", graph);
-        bench.write("configs/run.ron", "(graph: \"graph.ron\", scene: \"triangles\", size: (32, 24))");
+        bench.write(
+            "configs/run.ron",
+            "(graph: \"graph.ron\", scene: \"triangles\", size: (32, 24))",
+        );
         for (name, text) in shaders {
             bench.write(&format!("shaders/{name}"), &glsl(text));
         }
-        let scene = std::fs::read_to_string(common::root().join("shaders/common/scene.glsl")).unwrap();
+        let scene =
+            std::fs::read_to_string(common::root().join("shaders/common/scene.glsl")).unwrap();
         bench.write("shaders/scene.glsl", &scene);
         bench
     }
@@ -52,7 +56,11 @@ impl Bench {
     #[track_caller]
     fn edit(&self, name: &str, old: &str, new: &str) {
         let text = std::fs::read_to_string(self.path(name)).unwrap();
-        assert_eq!(text.matches(old).count(), 1, "'{old}' stands once in {name}");
+        assert_eq!(
+            text.matches(old).count(),
+            1,
+            "'{old}' stands once in {name}"
+        );
         self.write(name, &text.replace(old, new));
     }
 
@@ -123,9 +131,15 @@ fn what_only_a_pass_that_is_off_writes_is_zeros() {
     );
     let lab = bench.lab();
     let sum = |off: &str| {
-        let params = if off.is_empty() { String::new() } else { format!(", params: {{ \"off\": {off} }}") };
-        bench
-            .write("configs/run.ron", &format!("(graph: \"graph.ron\", scene: \"triangles\", size: (32, 24){params})"));
+        let params = if off.is_empty() {
+            String::new()
+        } else {
+            format!(", params: {{ \"off\": {off} }}")
+        };
+        bench.write(
+            "configs/run.ron",
+            &format!("(graph: \"graph.ron\", scene: \"triangles\", size: (32, 24){params})"),
+        );
         let mut session = bench.run(&lab, &["sum"], 2);
         let found = reds(&mut session, "sum", 0);
         assert!(found.iter().all(|v| *v == found[0]), "{found:?}");
@@ -145,14 +159,24 @@ fn what_only_a_pass_that_is_off_writes_is_zeros() {
     // The command line names what it does not know, and says what has no writer left.
     let plan = |off: &str| {
         let mut command = conelab(bench.0.path());
-        command.args(["graph", "passes/graph.ron", "--want", "sum", "--set"]).arg(format!("off={off}"));
+        command
+            .args(["graph", "passes/graph.ron", "--want", "sum", "--set"])
+            .arg(format!("off={off}"));
         command
     };
-    assert!(succeeds(&mut plan(r#"["make first"]"#)).contains("(--barriers prints why): make first"));
+    assert!(
+        succeeds(&mut plan(r#"["make first"]"#)).contains("(--barriers prints why): make first")
+    );
     let said = common::fails(&mut plan(r#"["make frist"]"#));
-    assert!(said.contains("no pass 'make frist'") && said.contains("make first"), "{said}");
+    assert!(
+        said.contains("no pass 'make frist'") && said.contains("make first"),
+        "{said}"
+    );
     let said = common::fails(&mut plan(r#"["add"]"#));
-    assert!(said.contains("nothing writes 'sum' when these passes are off: add"), "{said}");
+    assert!(
+        said.contains("nothing writes 'sum' when these passes are off: add"),
+        "{said}"
+    );
     assert!(common::fails(&mut plan("add")).contains("expected a list of passes"));
 }
 
@@ -167,9 +191,17 @@ fn store(name: &str, value: &str) -> String {
 
 /// The 32-bit words of a buffer.
 fn words(session: &mut Session, name: &str) -> Vec<u32> {
-    let index = session.graph.buffers.iter().position(|b| b.0 == name).unwrap();
+    let index = session
+        .graph
+        .buffers
+        .iter()
+        .position(|b| b.0 == name)
+        .unwrap();
     let bytes = session.program.read_buffer(index).unwrap();
-    bytes.chunks_exact(4).map(|b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]])).collect()
+    bytes
+        .chunks_exact(4)
+        .map(|b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]]))
+        .collect()
 }
 
 /// The first channel of a texture's mip.
@@ -221,22 +253,28 @@ fn reaction_and_diffusion_over_frames() {
         let mut session = bench.run(&lab, &["state"], frames);
         let found = floats(&mut session, "state", 0);
         let expected = react(frames - 1);
-        let worst =
-            found.iter().zip(&expected).map(|(f, e)| (f[0] - e[0]).abs().max((f[1] - e[1]).abs())).fold(0.0, f32::max);
+        let worst = found
+            .iter()
+            .zip(&expected)
+            .map(|(f, e)| (f[0] - e[0]).abs().max((f[1] - e[1]).abs()))
+            .fold(0.0, f32::max);
         assert!(worst < 1e-4, "{worst} after {frames} frames");
     }
 }
 
 fn react(steps: usize) -> Vec<[f32; 2]> {
     let inside = |i: usize| (12..20).contains(&(i % 32)) && (12..20).contains(&(i / 32));
-    let mut state: Vec<[f32; 2]> = (0..1024).map(|i| [1.0, if inside(i) { 1.0 } else { 0.0 }]).collect();
+    let mut state: Vec<[f32; 2]> = (0..1024)
+        .map(|i| [1.0, if inside(i) { 1.0 } else { 0.0 }])
+        .collect();
     for _ in 0..steps {
         let last = state.clone();
         let at = |x: usize, y: usize| last[y % 32 * 32 + x % 32];
         for (i, c) in state.iter_mut().enumerate() {
             let (x, y) = (i % 32, i / 32);
             let near = [at(x + 1, y), at(x + 31, y), at(x, y + 1), at(x, y + 31)];
-            let around: [f32; 2] = std::array::from_fn(|k| near.iter().map(|n| n[k]).sum::<f32>() - 4.0 * c[k]);
+            let around: [f32; 2] =
+                std::array::from_fn(|k| near.iter().map(|n| n[k]).sum::<f32>() - 4.0 * c[k]);
             let rate = c[0] * c[1] * c[1];
             *c = [
                 c[0] + 0.2 * around[0] + 0.037 * (1.0 - c[0]) - rate,
@@ -434,16 +472,31 @@ fn blur_pyramid_histogram_lists_and_views() {
     const N: usize = 64;
     let bench = Bench::new(IMAGES, IMAGE_SHADERS);
     let lab = bench.lab();
-    let wanted = ["pyramid", "histogram", "kept", "list", "unpacked", "blurred"];
+    let wanted = [
+        "pyramid",
+        "histogram",
+        "kept",
+        "list",
+        "unpacked",
+        "blurred",
+    ];
     // The fourth frame is like the first: whatever frames leave behind is overwritten.
     let mut session = bench.run(&lab, &wanted, 4);
 
-    let source: Vec<f32> = (0..N * N).map(|i| ((i % N * 7 + (i / N) * (i / N) * 13) % 32) as f32 / 32.0).collect();
+    let source: Vec<f32> = (0..N * N)
+        .map(|i| ((i % N * 7 + (i / N) * (i / N) * 13) % 32) as f32 / 32.0)
+        .collect();
     let blur = |image: &[f32], step: &dyn Fn(usize, isize) -> usize| -> Vec<f32> {
-        (0..N * N).map(|i| 0.25 * (image[step(i, -1)] + 2.0 * image[i] + image[step(i, 1)])).collect()
+        (0..N * N)
+            .map(|i| 0.25 * (image[step(i, -1)] + 2.0 * image[i] + image[step(i, 1)]))
+            .collect()
     };
-    let wide = blur(&source, &|i, d| i / N * N + (i % N).saturating_add_signed(d).min(N - 1));
-    let blurred = blur(&wide, &|i, d| (i / N).saturating_add_signed(d).min(N - 1) * N + i % N);
+    let wide = blur(&source, &|i, d| {
+        i / N * N + (i % N).saturating_add_signed(d).min(N - 1)
+    });
+    let blurred = blur(&wide, &|i, d| {
+        (i / N).saturating_add_signed(d).min(N - 1) * N + i % N
+    });
     assert!(reds(&mut session, "blurred", 0) == blurred, "blur");
 
     let mut level = blurred;
@@ -466,19 +519,32 @@ fn blur_pyramid_histogram_lists_and_views() {
 
     let bright: Vec<usize> = (0..N * N).filter(|i| source[*i] >= 0.75).collect();
     let list = words(&mut session, "list");
-    assert_eq!(list[..4], [bright.len().div_ceil(32) as u32, 1, 1, bright.len() as u32]);
-    let mut texels: Vec<usize> =
-        list[4..4 + bright.len()].iter().map(|t| (t >> 16) as usize * N + (t & 0xffff) as usize).collect();
+    assert_eq!(
+        list[..4],
+        [bright.len().div_ceil(32) as u32, 1, 1, bright.len() as u32]
+    );
+    let mut texels: Vec<usize> = list[4..4 + bright.len()]
+        .iter()
+        .map(|t| (t >> 16) as usize * N + (t & 0xffff) as usize)
+        .collect();
     texels.sort_unstable();
     assert_eq!(texels, bright);
-    let marks: Vec<f32> = source.iter().map(|v| if *v >= 0.75 { 8.0 } else { 7.0 }).collect();
+    let marks: Vec<f32> = source
+        .iter()
+        .map(|v| if *v >= 0.75 { 8.0 } else { 7.0 })
+        .collect();
     assert!(reds(&mut session, "kept", 0) == marks, "marks");
 
     let round = |v: f32| (v * 255.0).round() as u32;
     for (i, texel) in floats(&mut session, "unpacked", 0).iter().enumerate() {
         let pack = |k: usize| {
             let (x, y) = (i % 16 * 4 + k % 4, i / 16 * 4 + k / 4);
-            let value = [(x & 3) as f32 / 4.0, (y & 3) as f32 / 4.0, 1.0, source[y * N + x]];
+            let value = [
+                (x & 3) as f32 / 4.0,
+                (y & 3) as f32 / 4.0,
+                1.0,
+                source[y * N + x],
+            ];
             value.iter().rev().fold(0, |word, v| word << 8 | round(*v))
         };
         let most = (0..16).map(pack).max().unwrap();
@@ -492,8 +558,13 @@ fn what_nobody_needs_is_neither_run_nor_made() {
     let bench = Bench::new(IMAGES, IMAGE_SHADERS);
     let lab = bench.lab();
     let ran = |session: &Session| -> Vec<String> {
-        let mut list: Vec<String> =
-            session.program.plan.steps.iter().map(|s| session.graph.passes[s.pass].value.name.value.clone()).collect();
+        let mut list: Vec<String> = session
+            .program
+            .plan
+            .steps
+            .iter()
+            .map(|s| session.graph.passes[s.pass].value.name.value.clone())
+            .collect();
         list.dedup();
         list
     };
@@ -503,9 +574,23 @@ fn what_nobody_needs_is_neither_run_nor_made() {
     let names: Vec<String> = made(&session).into_iter().map(|m| m.0).collect();
     assert_eq!(names, ["source", "histogram"]);
     let session = bench.run(&lab, &["kept"], 1);
-    assert_eq!(ran(&session), ["source", "no list", "collect", "size", "no marks", "mark", "keep marks"]);
+    assert_eq!(
+        ran(&session),
+        [
+            "source",
+            "no list",
+            "collect",
+            "size",
+            "no marks",
+            "mark",
+            "keep marks"
+        ]
+    );
     let source = made(&session).iter().find(|m| m.0 == "source").unwrap().1;
-    assert!((64 * 64 * 4..64 * 64 * 8).contains(&source), "{source} bytes");
+    assert!(
+        (64 * 64 * 4..64 * 64 * 8).contains(&source),
+        "{source} bytes"
+    );
     let session = bench.run(&lab, &["packed"], 1);
     assert_eq!(ran(&session), ["source", "nothing packed", "pack"]);
 }
@@ -567,7 +652,12 @@ fn stores_that_nobody_needs_are_taken_out_of_compute_shaders() {
     );
     let lab = bench.lab();
     let made = |session: &Session| -> Vec<String> {
-        session.program.memory(&session.graph).into_iter().map(|m| m.0).collect()
+        session
+            .program
+            .memory(&session.graph)
+            .into_iter()
+            .map(|m| m.0)
+            .collect()
     };
     // The image that is asked for its size is there and stays as it was; the sum of the frame before is read.
     let mut session = bench.run(&lab, &["count"], 1);
@@ -591,7 +681,9 @@ fn stores_that_nobody_needs_are_taken_out_of_compute_shaders() {
     // A part is stored; the rest is what was there.
     let mut session = bench.run(&lab, &["left"], 2);
     assert_eq!(made(&session), ["sized", "sum", "left", "count"]);
-    let expected: Vec<f32> = (0..128).map(|i| if i % 16 < 8 { 5.0 } else { 7.0 }).collect();
+    let expected: Vec<f32> = (0..128)
+        .map(|i| if i % 16 < 8 { 5.0 } else { 7.0 })
+        .collect();
     assert_eq!(reds(&mut session, "left", 0), expected);
     // All together are the same.
     let mut session = bench.run(&lab, &["first", "second", "sized", "sum", "left"], 5);
@@ -645,12 +737,20 @@ fn pixels_of_a_triangle_by_samples() {
         let expected: Vec<u32> = (0..1024)
             .map(|i| {
                 let (x, y) = ((i % 32) as f32, (i / 32) as f32);
-                u32::from(places.iter().any(|[a, b]| inside(x + *a as f32 / 16.0, y + *b as f32 / 16.0)))
+                u32::from(
+                    places
+                        .iter()
+                        .any(|[a, b]| inside(x + *a as f32 / 16.0, y + *b as f32 / 16.0)),
+                )
             })
             .collect();
         // A sample on an edge may fall either way.
         let different = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
-        assert!(different <= 2, "{samples} samples: {different} of {} pixels differ", expected.iter().sum::<u32>());
+        assert!(
+            different <= 2,
+            "{samples} samples: {different} of {} pixels differ",
+            expected.iter().sum::<u32>()
+        );
     }
 }
 
@@ -780,34 +880,56 @@ fn raster_stages_targets_and_blending() {
         ],
     );
     let lab = bench.lab();
-    let wanted = ["gradient", "sum", "quads", "plain", "curved", "points", "lit", "stack"];
+    let wanted = [
+        "gradient", "sum", "quads", "plain", "curved", "points", "lit", "stack",
+    ];
     let mut session = bench.run(&lab, &wanted, 5);
     let at = |i: usize| (i % 32, i / 32);
     for (i, t) in floats(&mut session, "gradient", 0).iter().enumerate() {
         assert_eq!(*t, [at(i).0 as f32 + 0.5, at(i).1 as f32 + 0.5, 0.5, 1.0]);
     }
     assert!(
-        floats(&mut session, "sum", 0).iter().all(|t| *t == [4.0, 3.0, 0.0, 0.75]),
+        floats(&mut session, "sum", 0)
+            .iter()
+            .all(|t| *t == [4.0, 3.0, 0.0, 0.75]),
         "sums of three draws over a clear"
     );
     for (i, v) in reds(&mut session, "quads", 0).iter().enumerate() {
         let (x, y) = at(i);
-        assert_eq!(*v, f32::from(u8::from(x < 12 && x % 4 < 2 && (3..8).contains(&y))), "quads at {x}, {y}");
+        assert_eq!(
+            *v,
+            f32::from(u8::from(x < 12 && x % 4 < 2 && (3..8).contains(&y))),
+            "quads at {x}, {y}"
+        );
     }
     let plain = reds(&mut session, "plain", 0);
     let split = reds(&mut session, "curved", 0);
     let covered = plain.iter().sum::<f32>();
     let different = plain.iter().zip(&split).filter(|(a, b)| a != b).count();
-    assert!(covered > 200.0 && different <= 4, "{different} of {covered} pixels differ when the triangle is split");
+    assert!(
+        covered > 200.0 && different <= 4,
+        "{different} of {covered} pixels differ when the triangle is split"
+    );
     // Level 4: rings of 12, 6 and 1 points (Vulkan specification, "Triangle Tessellation"), each corner once.
     assert_eq!(words(&mut session, "points"), [19, 1, 1, 1]);
     for (i, v) in reds(&mut session, "lit", 0).iter().enumerate() {
-        assert_eq!(*v, if at(i).0 < 16 { 0.0 } else { 1.0 }, "depth comparison at {:?}", at(i));
+        assert_eq!(
+            *v,
+            if at(i).0 < 16 { 0.0 } else { 1.0 },
+            "depth comparison at {:?}",
+            at(i)
+        );
     }
     for layer in 0..3 {
         let texels = session.texels("stack", 0, layer).unwrap().floats();
-        let expected: Vec<f32> = (0..64).map(|i| 10.0 + layer as f32 + (i % 8) as f32).collect();
-        assert_eq!(texels.iter().map(|t| t[0]).collect::<Vec<_>>(), expected, "layer {layer}");
+        let expected: Vec<f32> = (0..64)
+            .map(|i| 10.0 + layer as f32 + (i % 8) as f32)
+            .collect();
+        assert_eq!(
+            texels.iter().map(|t| t[0]).collect::<Vec<_>>(),
+            expected,
+            "layer {layer}"
+        );
     }
     assert_clean(&lab);
 }
@@ -830,7 +952,10 @@ fn an_image_that_only_atomics_touch_is_written() {
         )],
     );
     let lab = bench.lab();
-    assert_eq!(reds(&mut bench.run(&lab, &["count"], 3), "count", 0), [10.0; 16]);
+    assert_eq!(
+        reds(&mut bench.run(&lab, &["count"], 3), "count", 0),
+        [10.0; 16]
+    );
 }
 
 #[test]
@@ -936,8 +1061,7 @@ fn what_is_transient_shares_memory_and_changes_nothing() {
             (name: "sum", shaders: ["sum.comp"], dispatch: Groups(64, 1, 1)),
         ],
     )"#;
-    let line =
-        "layout(local_size_x = 64) in;\n#include \"params.glsl\"\nuint i() { return gl_GlobalInvocationID.x; }\n";
+    let line = "layout(local_size_x = 64) in;\n#include \"params.glsl\"\nuint i() { return gl_GlobalInvocationID.x; }\n";
     let buffer = |kind: &str, block: &str, name: &str| {
         format!("layout(std430) {kind} buffer {block} {{ float list[]; }} {name};\n")
     };
@@ -1007,7 +1131,10 @@ fn what_is_transient_shares_memory_and_changes_nothing() {
             ),
         ),
     ];
-    let shaders: Vec<(&str, &str)> = shaders.iter().map(|(name, text)| (*name, text.as_str())).collect();
+    let shaders: Vec<(&str, &str)> = shaders
+        .iter()
+        .map(|(name, text)| (*name, text.as_str()))
+        .collect();
     let bench = Bench::new(graph, &shaders);
     let lab = bench.lab();
     let expected = |first: f32, last: f32| -> Vec<u32> {
@@ -1020,21 +1147,44 @@ fn what_is_transient_shares_memory_and_changes_nothing() {
     assert_eq!(words(&mut session, "result"), expected(1.0, 0.0));
     let alone = bench.run(&lab, &["result", "t", "drawn", "copied", "a", "b"], 1);
     println!("{} bytes, alone {}", bytes(&session), bytes(&alone));
-    assert!(bytes(&session) + 2 * 16384 <= bytes(&alone), "at most three of the five at a time");
-    assert!(session.texels("t", 0, 0).unwrap_err().to_string().contains("'t' is transient"));
+    assert!(
+        bytes(&session) + 2 * 16384 <= bytes(&alone),
+        "at most three of the five at a time"
+    );
+    assert!(
+        session
+            .texels("t", 0, 0)
+            .unwrap_err()
+            .to_string()
+            .contains("'t' is transient")
+    );
 
     // What sleeps leaves nothing in them: it runs again for who reads.
     session.set_redo(conelab::graph::run::Redo::Changed);
     let mut params = session.params.clone();
-    for (frame, (name, value)) in
-        [("last", "1"), ("last", "2"), ("first", "7"), ("last", "2"), ("last", "3")].iter().enumerate()
+    for (frame, (name, value)) in [
+        ("last", "1"),
+        ("last", "2"),
+        ("first", "7"),
+        ("last", "2"),
+        ("last", "3"),
+    ]
+    .iter()
+    .enumerate()
     {
         params.set(name, value).unwrap();
         assert!(session.set_params(&lab, &params).unwrap());
         session.frame(0.0).unwrap();
         let times = session.finish().unwrap();
-        let (first, last) = ([1.0, 1.0, 7.0, 7.0, 7.0][frame], [1.0, 2.0, 2.0, 2.0, 3.0][frame]);
-        assert_eq!(words(&mut session, "result"), expected(first, last), "frame {frame}");
+        let (first, last) = (
+            [1.0, 1.0, 7.0, 7.0, 7.0][frame],
+            [1.0, 2.0, 2.0, 2.0, 3.0][frame],
+        );
+        assert_eq!(
+            words(&mut session, "result"),
+            expected(first, last),
+            "frame {frame}"
+        );
         let slept = times.last().unwrap().asleep.len();
         assert_eq!(slept, if frame == 3 { 8 } else { 0 }, "frame {frame}");
     }
@@ -1042,11 +1192,25 @@ fn what_is_transient_shares_memory_and_changes_nothing() {
     // A program made from the parts of another takes the memory over, and one that wants more does not.
     for wanted in [&["result"][..], &["result", "t"]] {
         let experiment = Experiment::read(&bench.path("configs/run.ron")).unwrap();
-        let loaded = lab.home.load_for(&experiment, &session.scene, &lab.gpu.info).unwrap();
+        let loaded = lab
+            .home
+            .load_for(&experiment, &session.scene, &lab.gpu.info)
+            .unwrap();
         let list = wanted.iter().map(|w| String::from(*w)).collect();
         let parts = session.reusable_parts();
-        let mut next = lab.build(&experiment, &loaded, session.scene.clone(), list, Some(&parts)).unwrap();
-        assert_eq!(next.program.change.resized, if wanted.len() == 1 { 0 } else { 5 });
+        let mut next = lab
+            .build(
+                &experiment,
+                &loaded,
+                session.scene.clone(),
+                list,
+                Some(&parts),
+            )
+            .unwrap();
+        assert_eq!(
+            next.program.change.resized,
+            if wanted.len() == 1 { 0 } else { 5 }
+        );
         next.swap_in(&mut session).unwrap();
         next.frame(0.0).unwrap();
         next.finish().unwrap();
@@ -1124,15 +1288,27 @@ fn a_pass_a_texture_and_a_parameter_take_no_rust() {
     );
     let render = |settings: &[&str]| {
         let mut command = conelab(bench.0.path());
-        command.args(["render", "configs/run.ron", "-o", "out.png", "--json", "out.json"]);
+        command.args([
+            "render",
+            "configs/run.ron",
+            "-o",
+            "out.png",
+            "--json",
+            "out.json",
+        ]);
         command.args(settings.iter().flat_map(|s| ["--set", s]));
         succeeds(&mut command);
-        let stats: serde_json::Value = serde_json::from_slice(&std::fs::read(bench.path("out.json")).unwrap()).unwrap();
+        let stats: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(bench.path("out.json")).unwrap()).unwrap();
         let picture = image::open(bench.path("out.png")).unwrap().to_rgb8();
         (picture.get_pixel(10, 10).0, stats)
     };
     let names = |list: &serde_json::Value| -> Vec<String> {
-        list.as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap().to_string()).collect()
+        list.as_array()
+            .unwrap()
+            .iter()
+            .map(|p| p["name"].as_str().unwrap().to_string())
+            .collect()
     };
     let (pixel, stats) = render(&[]);
     assert_eq!(pixel, [64; 3]);
@@ -1159,11 +1335,22 @@ fn a_pass_a_texture_and_a_parameter_take_no_rust() {
     );
     let (pixel, stats) = render(&["level=1"]);
     // Half may be stored as 127 or 128 (Vulkan, section 3.10.1).
-    assert!(pixel[0] == 255 && (127..=128).contains(&pixel[1]) && pixel[2] == 0, "{pixel:?}");
+    assert!(
+        pixel[0] == 255 && (127..=128).contains(&pixel[1]) && pixel[2] == 0,
+        "{pixel:?}"
+    );
     assert_eq!(names(&stats["passes"]), ["fill", "tint"]);
-    assert_eq!(stats["params"], serde_json::json!({ "level": 1.0, "tint": [1.0, 0.5, 0.0] }));
+    assert_eq!(
+        stats["params"],
+        serde_json::json!({ "level": 1.0, "tint": [1.0, 0.5, 0.0] })
+    );
     // What nobody needs takes no memory.
-    let made: Vec<&str> = stats["bytes"].as_object().unwrap().keys().map(String::as_str).collect();
+    let made: Vec<&str> = stats["bytes"]
+        .as_object()
+        .unwrap()
+        .keys()
+        .map(String::as_str)
+        .collect();
     assert_eq!(made, ["grey", "picture"]);
     let (pixel, stats) = render(&["level=1", "tint=(0, 1, 0.25)"]);
     assert_eq!(pixel, [0, 255, 64]);
@@ -1176,7 +1363,11 @@ fn parameter() -> impl Strategy<Value = (&'static str, String, Vec<u32>)> {
     let vector = |kind: &'static str, n: usize| {
         prop::collection::vec(float(), n).prop_map(move |v| {
             let text: Vec<String> = v.iter().map(|x| format!("{x:?}")).collect();
-            (kind, format!("({})", text.join(", ")), v.iter().map(|x| x.to_bits()).collect())
+            (
+                kind,
+                format!("({})", text.join(", ")),
+                v.iter().map(|x| x.to_bits()).collect(),
+            )
         })
     };
     prop_oneof![
@@ -1204,7 +1395,11 @@ fn read_by_shader(lab: &Lab, bench: &Bench, list: &[(&str, String, Vec<u32>)]) -
             "Choice" => "options: [\"option0\", \"option1\", \"option2\"]",
             _ => "default: (0, 0, 0)",
         };
-        writeln!(decls, "{kind}(name: \"p{i}\", {default}, help: \"Number {i}.\"),").unwrap();
+        writeln!(
+            decls,
+            "{kind}(name: \"p{i}\", {default}, help: \"Number {i}.\"),"
+        )
+        .unwrap();
         let quote = if *kind == "Choice" { "\"" } else { "" };
         writeln!(set, "\"p{i}\": {quote}{value}{quote},").unwrap();
         for c in 0..words.len() {
@@ -1246,20 +1441,36 @@ fn shaders_see_parameters_of_every_kind() {
     let f = f32::to_bits;
     let each = [
         ("Bool", "true".to_string(), vec![1]),
-        ("Vec3", "(1.0, 2.0, 3.0)".to_string(), vec![f(1.0), f(2.0), f(3.0)]),
+        (
+            "Vec3",
+            "(1.0, 2.0, 3.0)".to_string(),
+            vec![f(1.0), f(2.0), f(3.0)],
+        ),
         ("Float", "0.5".to_string(), vec![f(0.5)]),
         ("Vec2", "(-1.0, 7.0)".to_string(), vec![f(-1.0), f(7.0)]),
         ("Int", "-3".to_string(), vec![(-3i32).cast_unsigned()]),
-        ("Vec4", "(4.0, 5.0, 6.0, 7.0)".to_string(), vec![f(4.0), f(5.0), f(6.0), f(7.0)]),
+        (
+            "Vec4",
+            "(4.0, 5.0, 6.0, 7.0)".to_string(),
+            vec![f(4.0), f(5.0), f(6.0), f(7.0)],
+        ),
         ("Choice", "option2".to_string(), vec![2]),
-        ("Colour", "(0.25, 0.5, 0.75)".to_string(), vec![f(0.25), f(0.5), f(0.75)]),
+        (
+            "Colour",
+            "(0.25, 0.5, 0.75)".to_string(),
+            vec![f(0.25), f(0.5), f(0.75)],
+        ),
         ("Bool", "false".to_string(), vec![0]),
     ];
     let expected: Vec<u32> = each.iter().flat_map(|p| p.2.clone()).collect();
     assert_eq!(read_by_shader(&lab, &bench, &each), expected);
 
     // Any sequence (std140: scalars at 4, vec2 at 8, vec3 and vec4 at 16 bytes).
-    let mut runner = TestRunner::new(Config { cases: 32, failure_persistence: None, ..Config::default() });
+    let mut runner = TestRunner::new(Config {
+        cases: 32,
+        failure_persistence: None,
+        ..Config::default()
+    });
     runner
         .run(&prop::collection::vec(parameter(), 1..14), |list| {
             let expected: Vec<u32> = list.iter().flat_map(|p| p.2.clone()).collect();
@@ -1302,25 +1513,46 @@ fn named_values_reach_expressions_and_shaders() {
         )],
     );
     // Another file reads the values of this one, and this one's shader those of the other.
-    bench.write("passes/rest.ron", r#"(values: { "width_3": Float("width + blocks * place_z") })"#);
+    bench.write(
+        "passes/rest.ron",
+        r#"(values: { "width_3": Float("width + blocks * place_z") })"#,
+    );
     let lab = bench.lab();
     let mut session = bench.run(&lab, &["found"], 1);
     let expected = |third: f32| -> Vec<u32> {
-        (0..7).flat_map(|i| [i, 7, third.to_bits(), (32.0f32 + 7.0 * 3.0).to_bits()]).collect()
+        (0..7)
+            .flat_map(|i| [i, 7, third.to_bits(), (32.0f32 + 7.0 * 3.0).to_bits()])
+            .collect()
     };
-    assert_eq!(words(&mut session, "found"), expected(1.0 / 3.0), "5 * 1.5, rounded down, is 7");
+    assert_eq!(
+        words(&mut session, "found"),
+        expected(1.0 / 3.0),
+        "5 * 1.5, rounded down, is 7"
+    );
 
     // What only shaders see is a write to a buffer; a size is another session.
     let mut params = session.params.clone();
     params.set("level", "6.0").unwrap();
-    assert!(session.set_params(&lab, &params).unwrap(), "no session is made for a number");
+    assert!(
+        session.set_params(&lab, &params).unwrap(),
+        "no session is made for a number"
+    );
     session.frame(0.0).unwrap();
     session.finish().unwrap();
     assert_eq!(words(&mut session, "found"), expected(2.0));
     params.set("cells", "6").unwrap();
-    assert!(!session.set_params(&lab, &params).unwrap(), "9 blocks need a longer buffer");
+    assert!(
+        !session.set_params(&lab, &params).unwrap(),
+        "9 blocks need a longer buffer"
+    );
     assert_clean(&lab);
-    assert!(params.set("blocks", "3").unwrap_err().contains("no parameter 'blocks'"), "nobody sets a value");
+    assert!(
+        params
+            .set("blocks", "3")
+            .unwrap_err()
+            .contains("no parameter 'blocks'"),
+        "nobody sets a value"
+    );
 }
 
 #[test]
@@ -1428,13 +1660,30 @@ fn a_table_is_filled_only_for_who_asks() {
     let lab = bench.lab();
     let session = bench.run(&lab, &["picture"], 1);
     assert_eq!(session.graph.pointer.as_deref(), Some("spot"));
-    assert!(!session.program.plan.buffers[0].used, "the table's buffer is made though nobody asked for it");
-    assert_eq!(session.program.plan.dropped.len(), 1, "{:?}", session.program.plan.dropped);
+    assert!(
+        !session.program.plan.buffers[0].used,
+        "the table's buffer is made though nobody asked for it"
+    );
+    assert_eq!(
+        session.program.plan.dropped.len(),
+        1,
+        "{:?}",
+        session.program.plan.dropped
+    );
 
     let mut session = bench.run(&lab, &["picture", "rows"], 1);
     let bytes = session.program.read_buffer(0).unwrap();
-    let row = |square, x, half| vec![Cell::Uint(square), Cell::Vector(vec![x, x]), Cell::Float(half)];
-    assert_eq!(decode(&session.table(0).unwrap(), &bytes), [row(0, -1.0, 0.0), row(1, 0.0, 0.5), row(4, 1.0, 1.0)]);
+    let row = |square, x, half| {
+        vec![
+            Cell::Uint(square),
+            Cell::Vector(vec![x, x]),
+            Cell::Float(half),
+        ]
+    };
+    assert_eq!(
+        decode(&session.table(0).unwrap(), &bytes),
+        [row(0, -1.0, 0.0), row(1, 0.0, 0.5), row(4, 1.0, 1.0)]
+    );
 }
 
 #[test]
@@ -1498,19 +1747,37 @@ fn members_of_buffers_by_name() {
     );
     let lab = bench.lab();
     let mut session = bench.run(&lab, &["picture", "rows", "points"], 1);
-    let sizes: Vec<u64> = session.program.plan.buffers.iter().map(|b| b.size).collect();
+    let sizes: Vec<u64> = session
+        .program
+        .plan
+        .buffers
+        .iter()
+        .map(|b| b.size)
+        .collect();
     assert_eq!(sizes, [56 + 10 * 16, 3 * 16 + 16]);
     assert_eq!(reds(&mut session, "picture", 0), [1.0; 32 * 24]);
     let bytes = session.buffer("rows").unwrap();
     let row = |i: u16| {
         let x = f32::from(i);
-        vec![Cell::Uint(u32::from(i * i)), Cell::Vector(vec![x, -1.0]), Cell::Float(-1.0), Cell::Float(0.5 * x)]
+        vec![
+            Cell::Uint(u32::from(i * i)),
+            Cell::Vector(vec![x, -1.0]),
+            Cell::Float(-1.0),
+            Cell::Float(0.5 * x),
+        ]
     };
-    assert_eq!(decode(&session.table(0).unwrap(), &bytes), [row(0), row(1), row(2)]);
+    assert_eq!(
+        decode(&session.table(0).unwrap(), &bytes),
+        [row(0), row(1), row(2)]
+    );
     // All that was asked for was filled: the word behind the head of the last row is nine squared.
     assert_eq!(words(&mut session, "rows")[(56 + 9 * 16 + 12) / 4], 81);
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
-    bench.edit("configs/run.ron", "size: (32, 24)", "size: (32, 24), params: { \"count\": 60 }");
+    bench.edit(
+        "configs/run.ron",
+        "size: (32, 24)",
+        "size: (32, 24), params: { \"count\": 60 }",
+    );
     let mut session = bench.run(&lab, &["picture"], 1);
     assert_eq!(session.failed_checks().unwrap(), ["too many (7)"]);
 }
@@ -1536,18 +1803,35 @@ fn groups_share_a_stage_and_a_condition() {
                 (name: "d", shaders: ["add.comp"], dispatch: Groups(1000, 1, 1)),
             ],
         )"#,
-        &[("add.comp", "layout(std430) buffer Sums { uint sum; } sums; void main() { atomicAdd(sums.sum, 1u); }")],
+        &[(
+            "add.comp",
+            "layout(std430) buffer Sums { uint sum; } sums; void main() { atomicAdd(sums.sum, 1u); }",
+        )],
     );
     let lab = bench.lab();
     let run = "size: (32, 24)";
     let mut last = run.to_string();
-    for (outer, inner, sum) in [(true, 1, 1003), (true, 0, 1001), (true, 2, 1105), (false, 2, 1000)] {
+    for (outer, inner, sum) in [
+        (true, 1, 1003),
+        (true, 0, 1001),
+        (true, 2, 1105),
+        (false, 2, 1000),
+    ] {
         let next = format!("{run}, params: {{ \"outer\": {outer}, \"inner\": {inner} }}");
         bench.edit("configs/run.ron", &last, &next);
         last = next;
         let mut session = bench.run(&lab, &["sums"], 1);
-        assert_eq!(words(&mut session, "sums"), [sum], "outer {outer}, inner {inner}");
-        let stages: Vec<&str> = session.graph.passes.iter().map(|p| p.value.stage()).collect();
+        assert_eq!(
+            words(&mut session, "sums"),
+            [sum],
+            "outer {outer}, inner {inner}"
+        );
+        let stages: Vec<&str> = session
+            .graph
+            .passes
+            .iter()
+            .map(|p| p.value.stage())
+            .collect();
         assert_eq!(stages, ["forget", "group", "group", "own", "d"]);
     }
 }
@@ -1623,8 +1907,17 @@ fn a_name_stands_for_what_its_condition_says() {
         assert_eq!(f32::from_bits(found[2]), 3.0, "{target}");
         assert_eq!(f32::from_bits(found[3]), 1.0, "{target}: outside is one");
         let corner = if target == "small" { 0.0 } else { 0.5 };
-        assert_eq!(f32::from_bits(found[4]), corner, "{target}: outside is the edge");
-        let names: Vec<String> = session.program.memory(&session.graph).into_iter().map(|m| m.0).collect();
+        assert_eq!(
+            f32::from_bits(found[4]),
+            corner,
+            "{target}: outside is the edge"
+        );
+        let names: Vec<String> = session
+            .program
+            .memory(&session.graph)
+            .into_iter()
+            .map(|m| m.0)
+            .collect();
         assert_eq!(names, made, "{target}");
     }
 }
@@ -1669,13 +1962,22 @@ fn what_is_left_out_is_the_default() {
         ],
     );
     let lab = bench.lab();
-    let mut session = bench.run(&lab, &["said", "unsaid", "saidDepth", "unsaidDepth", "alike"], 1);
+    let mut session = bench.run(
+        &lab,
+        &["said", "unsaid", "saidDepth", "unsaidDepth", "alike"],
+        1,
+    );
     let mut bytes = |name: &str| session.texels(name, 0, 0).unwrap().bytes;
     let said = bytes("said");
     assert!(said.iter().any(|b| *b != 0), "the scene is in the picture");
     assert_eq!(bytes("unsaid"), said);
     assert_eq!(bytes("unsaidDepth"), bytes("saidDepth"));
-    let alike = session.graph.textures.iter().position(|t| t.0 == "alike").unwrap();
+    let alike = session
+        .graph
+        .textures
+        .iter()
+        .position(|t| t.0 == "alike")
+        .unwrap();
     let plan = &session.program.plan.textures[alike];
     assert_eq!((plan.extent, plan.volume, plan.mips), ([4, 5, 6], true, 1));
 }
@@ -1689,8 +1991,13 @@ fn the_example_of_the_documentation_runs() {
     let mut files = 0;
     let blocks: Vec<&str> = example.split("\n```").collect();
     for pair in blocks.windows(2) {
-        let name = pair[0].lines().last().and_then(|line| line.strip_prefix('`')?.strip_suffix("`:"));
-        let Some((name, (_, body))) = name.zip(pair[1].split_once('\n')) else { continue };
+        let name = pair[0]
+            .lines()
+            .last()
+            .and_then(|line| line.strip_prefix('`')?.strip_suffix("`:"));
+        let Some((name, (_, body))) = name.zip(pair[1].split_once('\n')) else {
+            continue;
+        };
         std::fs::write(home.path().join(name), body).unwrap();
         files += 1;
     }
@@ -1698,9 +2005,21 @@ fn the_example_of_the_documentation_runs() {
     succeeds(conelab(home.path()).args(["check", "passes/sketch.ron", "configs/sketch.ron"]));
     let small = ["--set", "shadow_dim=256", "--size", "64x48"];
     let mut pictures = Vec::new();
-    for (name, more) in [("sketch", &[][..]), ("steady", &["--set", "steady=true", "--frames", "3", "--step", "0.1"])] {
+    for (name, more) in [
+        ("sketch", &[][..]),
+        (
+            "steady",
+            &["--set", "steady=true", "--frames", "3", "--step", "0.1"],
+        ),
+    ] {
         let file = home.path().join(format!("{name}.png"));
-        succeeds(conelab(home.path()).args(["render", "configs/sketch.ron", "-o"]).arg(&file).args(small).args(more));
+        succeeds(
+            conelab(home.path())
+                .args(["render", "configs/sketch.ron", "-o"])
+                .arg(&file)
+                .args(small)
+                .args(more),
+        );
         pictures.push(std::fs::read(file).unwrap());
     }
     assert_ne!(pictures[0], pictures[1]);

@@ -23,14 +23,23 @@ fn write(folder: &TempDir, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
 
 fn open(path: impl AsRef<Path>) -> Result<Scene, SceneError> {
     let begun = Instant::now();
-    let opened = Scene::open(&path.as_ref().to_string_lossy(), &|_, _| ControlFlow::Continue(()));
-    assert!(begun.elapsed() < Duration::from_secs(5), "{} took {:?}", path.as_ref().display(), begun.elapsed());
+    let opened = Scene::open(&path.as_ref().to_string_lossy(), &|_, _| {
+        ControlFlow::Continue(())
+    });
+    assert!(
+        begun.elapsed() < Duration::from_secs(5),
+        "{} took {:?}",
+        path.as_ref().display(),
+        begun.elapsed()
+    );
     opened
 }
 
 #[track_caller]
 fn tells(text: &str, pieces: &[&str]) {
-    pieces.iter().for_each(|piece| assert!(text.contains(piece), "no '{piece}' in: {text}"));
+    pieces
+        .iter()
+        .for_each(|piece| assert!(text.contains(piece), "no '{piece}' in: {text}"));
 }
 
 #[track_caller]
@@ -50,13 +59,32 @@ fn with_material(line: &str) -> (Scene, String) {
 #[test]
 fn a_colour_of_one_number_is_grey_and_of_two_is_left_out() {
     let (scene, warnings) = with_material("Kd 0.5");
-    assert_eq!((scene.materials[0].base_color.truncate().to_array(), warnings.as_str()), ([0.5; 3], ""));
-    for line in ["Kd 0.5 0.5", "Ke 1 2", "Ks", "Kd nan 0 0", "Kd 0 inf 0", "Ke -1 0 0", "Kd red", "Ns x", "map_Kd"] {
+    assert_eq!(
+        (
+            scene.materials[0].base_color.truncate().to_array(),
+            warnings.as_str()
+        ),
+        ([0.5; 3], "")
+    );
+    for line in [
+        "Kd 0.5 0.5",
+        "Ke 1 2",
+        "Ks",
+        "Kd nan 0 0",
+        "Kd 0 inf 0",
+        "Ke -1 0 0",
+        "Kd red",
+        "Ns x",
+        "map_Kd",
+    ] {
         let (_, warnings) = with_material(line);
         tells(&warnings, &["a.mtl: ", "left out ('line 2')"]);
     }
     let (scene, warnings) = with_material("Kd 1e5 0.5 0");
-    assert_eq!(scene.materials[0].base_color.truncate().to_array(), [1.0, 0.5, 0.0]);
+    assert_eq!(
+        scene.materials[0].base_color.truncate().to_array(),
+        [1.0, 0.5, 0.0]
+    );
     tells(&warnings, &["a.mtl: ", "more than arrives", "('line 2')"]);
 }
 
@@ -66,13 +94,27 @@ fn materials_that_no_library_defines_are_named() {
     write(&folder, "page.mtl", "<html>404 not found</html>\n");
     for text in [format!("mtllib page.mtl\n{TRIANGLE}"), TRIANGLE.into()] {
         let scene = open(write(&folder, "a.obj", text)).unwrap();
-        tells(&scene.warnings.join("\n"), &["a.obj: materials that no library defines are grey ('a')"]);
+        tells(
+            &scene.warnings.join("\n"),
+            &["a.obj: materials that no library defines are grey ('a')"],
+        );
     }
     let many: String = (0..20).map(|i| format!("usemtl m{i}\nf 1 2 3\n")).collect();
-    let warnings = open(write(&folder, "many.obj", format!("{TRIANGLE}{many}"))).unwrap().warnings.join("\n");
-    tells(&warnings, &["no library defines are grey (21 times: 'a', 'm0', 'm1', ...)"]);
+    let warnings = open(write(&folder, "many.obj", format!("{TRIANGLE}{many}")))
+        .unwrap()
+        .warnings
+        .join("\n");
+    tells(
+        &warnings,
+        &["no library defines are grey (21 times: 'a', 'm0', 'm1', ...)"],
+    );
     write(&folder, "a.mtl", "newmtl a\nKd 1 0 0\n");
-    let scene = open(write(&folder, "known.obj", format!("mtllib a.mtl\n{TRIANGLE}"))).unwrap();
+    let scene = open(write(
+        &folder,
+        "known.obj",
+        format!("mtllib a.mtl\n{TRIANGLE}"),
+    ))
+    .unwrap();
     assert_eq!(scene.warnings, [""; 0]);
 }
 
@@ -93,16 +135,42 @@ fn cameras_look_somewhere_and_lights_are_numbers() {
         )
     };
     let corners: [f32; 9] = [0.0, 0.0, 0.0, 1e3, 0.0, 0.0, 0.0, 1e3, 0.0];
-    write(&folder, "a.bin", corners.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>());
+    write(
+        &folder,
+        "a.bin",
+        corners
+            .iter()
+            .flat_map(|v| v.to_le_bytes())
+            .collect::<Vec<u8>>(),
+    );
     // One metre beside 100,000 km is no distance for 32-bit numbers.
     let far = open(write(&folder, "far.gltf", gltf("1e8", "0.5", "1"))).unwrap();
-    assert_eq!((far.cameras.len(), far.warnings.len()), (2, 0), "{:?}", far.warnings);
-    assert!(far.cameras.values().all(|c| (c.target - c.eye).try_normalize().is_some()), "{:?}", far.cameras);
+    assert_eq!(
+        (far.cameras.len(), far.warnings.len()),
+        (2, 0),
+        "{:?}",
+        far.warnings
+    );
+    assert!(
+        far.cameras
+            .values()
+            .all(|c| (c.target - c.eye).try_normalize().is_some()),
+        "{:?}",
+        far.cameras
+    );
     for (outer, strength, told) in [
-        ("1e39", "1", "cone angles that do not obey 0 <= inner <= outer <= 90 degrees"),
+        (
+            "1e39",
+            "1",
+            "cone angles that do not obey 0 <= inner <= outer <= 90 degrees",
+        ),
         ("0.05", "1", "cone angles"),
         ("0.5", "1e39", "intensity that is too large"),
-        ("0.5", "-1", "negative colours and intensities of lights count as 0"),
+        (
+            "0.5",
+            "-1",
+            "negative colours and intensities of lights count as 0",
+        ),
     ] {
         let scene = open(write(&folder, "light.gltf", gltf("0", outer, strength))).unwrap();
         tells(&scene.warnings.join("\n"), &["'node 2'", told]);
@@ -126,21 +194,45 @@ fn a_model_in_many_places_is_read_once() {
     let (scene, one) = (opened(&path.to_string_lossy()), opened("atrium"));
     assert_eq!(scene.meshes.len(), one.meshes.len() + 1);
     assert_eq!(scene.instances.len(), 12 * (one.instances.len() + 1));
-    assert_eq!((scene.textures.len(), scene.materials.len()), (one.textures.len(), one.materials.len() + 1));
+    assert_eq!(
+        (scene.textures.len(), scene.materials.len()),
+        (one.textures.len(), one.materials.len() + 1)
+    );
     assert!(scene.bounds().1.x > 11.0 * 30.0);
 }
 
 #[test]
 fn messages_speak_of_files_and_name_only_what_happened() {
     let folder = folder();
-    let deep = format!("(meshes: {{\"a\": {}{}}})", "[Solid(".repeat(1000), ")]".repeat(1000));
-    error(write(&folder, "deep.ron", &deep), &["deep.ron:1:", "brackets are nested too deeply"]);
-    let experiment = write(&folder, "e.ron", format!("(graph: {}{})", "[".repeat(1000), "]".repeat(1000)));
-    let told = conelab(root()).arg("check").arg(experiment).output().unwrap();
+    let deep = format!(
+        "(meshes: {{\"a\": {}{}}})",
+        "[Solid(".repeat(1000),
+        ")]".repeat(1000)
+    );
+    error(
+        write(&folder, "deep.ron", &deep),
+        &["deep.ron:1:", "brackets are nested too deeply"],
+    );
+    let experiment = write(
+        &folder,
+        "e.ron",
+        format!("(graph: {}{})", "[".repeat(1000), "]".repeat(1000)),
+    );
+    let told = conelab(root())
+        .arg("check")
+        .arg(experiment)
+        .output()
+        .unwrap();
     let told = String::from_utf8(told.stdout).unwrap();
-    assert!(told.contains("brackets are nested too deeply") && !told.contains("serde"), "{told}");
+    assert!(
+        told.contains("brackets are nested too deeply") && !told.contains("serde"),
+        "{told}"
+    );
     let flat = TRIANGLE.replace("v 0 1 0", "v 2 0 0") + "v 0 1 0\nf 1 2 4\n";
-    let warnings = open(write(&folder, "flat.obj", flat)).unwrap().warnings.join("\n");
+    let warnings = open(write(&folder, "flat.obj", flat))
+        .unwrap()
+        .warnings
+        .join("\n");
     tells(&warnings, &["flat.obj: dropped 1 triangles without area"]);
     assert!(!warnings.contains("NaN"), "{warnings}");
 }
@@ -151,21 +243,56 @@ fn one_line_may_name_several_material_libraries() {
     write(&folder, "a.mtl", "newmtl a\nKd 1 0 0\n");
     write(&folder, "b.mtl", "newmtl b\nKd 0 1 0\n");
     write(&folder, "two words.mtl", "newmtl a\nKd 0 0 1\n");
-    let scene = open(write(&folder, "two.obj", format!("mtllib a.mtl b.mtl\n{TRIANGLE}usemtl b\nf 1 3 2\n"))).unwrap();
-    let colors: Vec<[f32; 4]> = scene.materials.iter().map(|m| m.base_color.to_array()).collect();
-    assert_eq!(colors, [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]], "{:?}", scene.warnings);
-    let scene = open(write(&folder, "spaces.obj", format!("mtllib two words.mtl\n{TRIANGLE}"))).unwrap();
-    assert_eq!((scene.materials[0].base_color.z, scene.warnings.len()), (1.0, 0), "{:?}", scene.warnings);
+    let scene = open(write(
+        &folder,
+        "two.obj",
+        format!("mtllib a.mtl b.mtl\n{TRIANGLE}usemtl b\nf 1 3 2\n"),
+    ))
+    .unwrap();
+    let colors: Vec<[f32; 4]> = scene
+        .materials
+        .iter()
+        .map(|m| m.base_color.to_array())
+        .collect();
+    assert_eq!(
+        colors,
+        [[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0]],
+        "{:?}",
+        scene.warnings
+    );
+    let scene = open(write(
+        &folder,
+        "spaces.obj",
+        format!("mtllib two words.mtl\n{TRIANGLE}"),
+    ))
+    .unwrap();
+    assert_eq!(
+        (scene.materials[0].base_color.z, scene.warnings.len()),
+        (1.0, 0),
+        "{:?}",
+        scene.warnings
+    );
 }
 
 #[test]
 fn a_model_without_triangles_has_a_warning_and_one_of_another_format_an_error() {
     let folder = folder();
-    let noise: Vec<u8> = (0..5000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
-    let warnings = open(write(&folder, "empty.obj", "")).unwrap().warnings.join("\n");
+    let noise: Vec<u8> = (0..5000u32)
+        .map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8)
+        .collect();
+    let warnings = open(write(&folder, "empty.obj", ""))
+        .unwrap()
+        .warnings
+        .join("\n");
     tells(&warnings, &["empty.obj", "no triangles"]);
-    for (name, content) in [("junk.obj", noise.as_slice()), ("text.obj", b"hello world\n")] {
-        error(write(&folder, name, content), &[name, "it holds nothing of the OBJ format"]);
+    for (name, content) in [
+        ("junk.obj", noise.as_slice()),
+        ("text.obj", b"hello world\n"),
+    ] {
+        error(
+            write(&folder, name, content),
+            &[name, "it holds nothing of the OBJ format"],
+        );
     }
 }
 
@@ -174,24 +301,58 @@ fn a_model_without_triangles_has_a_warning_and_one_of_another_format_an_error() 
 fn hostile_polygons_and_lines_end() {
     let folder = folder();
     let scatter = |i: u32| i.wrapping_mul(2_654_435_761) >> 16;
-    let vertices: String = (0..1000).map(|i| format!("v {} {} 0\n", scatter(i), scatter(i + 5000))).collect();
-    let corners: String = (0..200_000).map(|i| format!(" {}", scatter(i) % 1000 + 1)).collect();
-    let scene = open(write(&folder, "polygon.obj", format!("{vertices}f{corners}\n"))).unwrap();
+    let vertices: String = (0..1000)
+        .map(|i| format!("v {} {} 0\n", scatter(i), scatter(i + 5000)))
+        .collect();
+    let corners: String = (0..200_000)
+        .map(|i| format!(" {}", scatter(i) % 1000 + 1))
+        .collect();
+    let scene = open(write(
+        &folder,
+        "polygon.obj",
+        format!("{vertices}f{corners}\n"),
+    ))
+    .unwrap();
     assert!(scene.triangle_count() > 1000, "{}", scene.triangle_count());
-    tells(&scene.warnings.join("\n"), &["polygon.obj: faces cross or touch themselves"]);
-    let lines = format!("{TRIANGLE}f 1 2 3{}\n{}", " \\\n1 2 3".repeat(100_000), "#".repeat(1 << 20));
+    tells(
+        &scene.warnings.join("\n"),
+        &["polygon.obj: faces cross or touch themselves"],
+    );
+    let lines = format!(
+        "{TRIANGLE}f 1 2 3{}\n{}",
+        " \\\n1 2 3".repeat(100_000),
+        "#".repeat(1 << 20)
+    );
     assert!(open(write(&folder, "lines.obj", lines)).is_ok());
-    let names = format!("mtllib {}\nusemtl {}\n{TRIANGLE}", "x/".repeat(1 << 20), "y".repeat(1 << 20));
-    let warnings = open(write(&folder, "names.obj", names)).unwrap().warnings.join("\n");
-    assert!(warnings.len() < 1000, "{} bytes of warnings", warnings.len());
+    let names = format!(
+        "mtllib {}\nusemtl {}\n{TRIANGLE}",
+        "x/".repeat(1 << 20),
+        "y".repeat(1 << 20)
+    );
+    let warnings = open(write(&folder, "names.obj", names))
+        .unwrap()
+        .warnings
+        .join("\n");
+    assert!(
+        warnings.len() < 1000,
+        "{} bytes of warnings",
+        warnings.len()
+    );
 }
 
 #[test]
 fn only_regular_files_are_opened() {
     let folder = folder();
     let fifo = folder.path().join("pipe.obj");
-    assert!(std::process::Command::new("mkfifo").arg(&fifo).status().unwrap().success());
-    let link = |to: &str, name: &str| std::os::unix::fs::symlink(to, folder.path().join(name)).unwrap();
+    assert!(
+        std::process::Command::new("mkfifo")
+            .arg(&fifo)
+            .status()
+            .unwrap()
+            .success()
+    );
+    let link =
+        |to: &str, name: &str| std::os::unix::fs::symlink(to, folder.path().join(name)).unwrap();
     link("/dev/zero", "zero.bin");
     link("/dev/zero", "zero.mtl");
     link("/dev/zero", "zero.png");
@@ -199,20 +360,53 @@ fn only_regular_files_are_opened() {
     link("/dev/zero", "zero.ron");
     link("pipe.obj", "pipe.hdr");
     error(&fifo, &["pipe.obj", "no regular file"]);
-    error(folder.path().join("zero.gltf"), &["zero.gltf", "no regular file"]);
-    error(folder.path().join("zero.ron"), &["zero.ron", "no regular file"]);
-    for uri in ["/dev/zero", "zero.bin", "../../../../../../dev/zero", "file:///dev/zero"] {
-        error(write(&folder, "a.gltf", gltf_with_buffer(uri)), &["a.gltf", "zero", "no regular file"]);
+    error(
+        folder.path().join("zero.gltf"),
+        &["zero.gltf", "no regular file"],
+    );
+    error(
+        folder.path().join("zero.ron"),
+        &["zero.ron", "no regular file"],
+    );
+    for uri in [
+        "/dev/zero",
+        "zero.bin",
+        "../../../../../../dev/zero",
+        "file:///dev/zero",
+    ] {
+        error(
+            write(&folder, "a.gltf", gltf_with_buffer(uri)),
+            &["a.gltf", "zero", "no regular file"],
+        );
     }
-    error(write(&folder, "sky.ron", "(environment: (file: \"pipe.hdr\"))"), &["pipe.hdr", "sky.ron"]);
+    error(
+        write(&folder, "sky.ron", "(environment: (file: \"pipe.hdr\"))"),
+        &["pipe.hdr", "sky.ron"],
+    );
     let text = format!("mtllib zero.mtl\n{TRIANGLE}");
-    tells(&open(write(&folder, "m.obj", text)).unwrap().warnings.join("\n"), &["zero.mtl", "no regular file"]);
+    tells(
+        &open(write(&folder, "m.obj", text))
+            .unwrap()
+            .warnings
+            .join("\n"),
+        &["zero.mtl", "no regular file"],
+    );
     write(&folder, "t.mtl", "newmtl a\nmap_Kd zero.png\n");
     let text = format!("mtllib t.mtl\n{TRIANGLE}");
-    tells(&open(write(&folder, "t.obj", text)).unwrap().warnings.join("\n"), &["zero.png", "no regular file"]);
+    tells(
+        &open(write(&folder, "t.obj", text))
+            .unwrap()
+            .warnings
+            .join("\n"),
+        &["zero.png", "no regular file"],
+    );
     for command in ["check", "render", "graph"] {
         let begun = Instant::now();
-        fails(conelab(root()).args([command]).arg(folder.path().join("zero.ron")));
+        fails(
+            conelab(root())
+                .args([command])
+                .arg(folder.path().join("zero.ron")),
+        );
         assert!(begun.elapsed() < Duration::from_secs(5));
     }
 }
@@ -231,20 +425,41 @@ fn gltf_with_buffer(uri: &str) -> String {
 fn absurd_sizes_are_told_before_work_begins() {
     let folder = folder();
     let far = TRIANGLE.replace('1', "3e38");
-    error(write(&folder, "far.obj", far.replace("f 3e38", "f 1")), &["far.obj", "units and scale"]);
+    error(
+        write(&folder, "far.obj", far.replace("f 3e38", "f 1")),
+        &["far.obj", "units and scale"],
+    );
     write(&folder, "a.obj", TRIANGLE);
     for (entry, pieces) in [
-        ("models: [(file: \"a.obj\", transform: (scale: (1e18, 1, 1)))]", &["s.ron:1:", "1e9"][..]),
-        ("models: [(file: \"a.obj\", transform: (translate: (0, 3e38, 1)))]", &["s.ron:1:", "1e9"]),
+        (
+            "models: [(file: \"a.obj\", transform: (scale: (1e18, 1, 1)))]",
+            &["s.ron:1:", "1e9"][..],
+        ),
+        (
+            "models: [(file: \"a.obj\", transform: (translate: (0, 3e38, 1)))]",
+            &["s.ron:1:", "1e9"],
+        ),
         (
             "models: [(builtin: \"huge-ground\", transform: (scale: (1e8, 1e8, 1e8)))]",
             &["huge-ground", "units and scale"],
         ),
         ("sky: (-1, 0, 0)", &["s.ron:1:", "0 or more"]),
-        ("cameras: {\"c\": (eye: (0, 0, 1e30), target: (0, 0, 0), fov_y: 50)}", &["s.ron:1:", "origin"]),
-        ("cameras: {\"c\": (eye: (1e8, 0, 1), target: (1e8, 0, 0.5), fov_y: 50, near: 2, far: 1)}", &["near"]),
-        ("cameras: {\"c\": (eye: (0, 1e8, 0), target: (0, 100000001, 0), fov_y: 50)}", &["one place", "8e0 m apart"]),
-        ("lights: [Point(color: (1, 1, 1), position: (1e20, 0, 0), shadow: true)]", &["s.ron:1:", "origin"]),
+        (
+            "cameras: {\"c\": (eye: (0, 0, 1e30), target: (0, 0, 0), fov_y: 50)}",
+            &["s.ron:1:", "origin"],
+        ),
+        (
+            "cameras: {\"c\": (eye: (1e8, 0, 1), target: (1e8, 0, 0.5), fov_y: 50, near: 2, far: 1)}",
+            &["near"],
+        ),
+        (
+            "cameras: {\"c\": (eye: (0, 1e8, 0), target: (0, 100000001, 0), fov_y: 50)}",
+            &["one place", "8e0 m apart"],
+        ),
+        (
+            "lights: [Point(color: (1, 1, 1), position: (1e20, 0, 0), shadow: true)]",
+            &["s.ron:1:", "origin"],
+        ),
     ] {
         error(write(&folder, "s.ron", format!("({entry})")), pieces);
     }
@@ -254,9 +469,19 @@ fn absurd_sizes_are_told_before_work_begins() {
 fn scenes_too_small_for_light_are_told() {
     let folder = folder();
     for (scale, warnings) in [("1e-3", 0), ("1e-6", 1)] {
-        let text = format!("(models: [(builtin: \"cornell\", transform: (scale: ({scale}, {scale}, {scale})))])");
+        let text = format!(
+            "(models: [(builtin: \"cornell\", transform: (scale: ({scale}, {scale}, {scale})))])"
+        );
         let scene = open(write(&folder, "small.ron", text)).unwrap();
-        assert_eq!(scene.warnings.iter().filter(|w| w.contains("light is lost")).count(), warnings, "{scale}");
+        assert_eq!(
+            scene
+                .warnings
+                .iter()
+                .filter(|w| w.contains("light is lost"))
+                .count(),
+            warnings,
+            "{scale}"
+        );
     }
 }
 
@@ -265,17 +490,33 @@ fn messages_quote_a_short_part_of_a_line() {
     let folder = folder();
     let long = "x".repeat(200_000);
     for (name, text) in [
-        ("long.ron", format!("(graph: \"rays.ron\", scene: \"cornell\", {long}: 1)")),
-        ("nul.ron", format!("(graph: \"rays.ron\",\0\0\x1b[31m scene: cornell, {long})")),
+        (
+            "long.ron",
+            format!("(graph: \"rays.ron\", scene: \"cornell\", {long}: 1)"),
+        ),
+        (
+            "nul.ron",
+            format!("(graph: \"rays.ron\",\0\0\x1b[31m scene: cornell, {long})"),
+        ),
         ("scene.ron", format!("(models: [], {long}: 1)")),
-        ("passes.ron", format!("(textures: {{ \"{long}\": (size: Scren) }}, output: \"{long}\")")),
+        (
+            "passes.ron",
+            format!("(textures: {{ \"{long}\": (size: Scren) }}, output: \"{long}\")"),
+        ),
     ] {
         let path = write(&folder, name, text);
         for command in ["check", "graph", "scene"] {
             let output = conelab(root()).arg(command).arg(&path).output().unwrap();
             let text = [output.stdout, output.stderr].concat();
-            assert!(text.len() < 20_000, "{command} {name}: {} bytes", text.len());
-            assert!(!text.iter().any(|b| b.is_ascii_control() && *b != b'\n'), "{command} {name}");
+            assert!(
+                text.len() < 20_000,
+                "{command} {name}: {} bytes",
+                text.len()
+            );
+            assert!(
+                !text.iter().any(|b| b.is_ascii_control() && *b != b'\n'),
+                "{command} {name}"
+            );
         }
     }
 }
@@ -296,11 +537,19 @@ fn includes_that_grow_with_a_power_or_go_in_a_circle_end_at_once() {
                  passes: [(name: \"l\", shaders: [\"l.comp\"], dispatch: Groups(1, 1, 1))])";
     std::fs::write(at("passes/l.ron"), graph).unwrap();
     for i in 0..40 {
-        std::fs::write(at(&format!("passes/r{i}.ron")), format!("(include: [\"r{}.ron\"])", i + 1)).unwrap();
+        std::fs::write(
+            at(&format!("passes/r{i}.ron")),
+            format!("(include: [\"r{}.ron\"])", i + 1),
+        )
+        .unwrap();
     }
     std::fs::write(at("passes/r40.ron"), "()").unwrap();
     let cycle = std::fs::read_to_string(at("passes/parts/tone.ron")).unwrap();
-    std::fs::write(at("passes/parts/tone.ron"), cycle.replacen('(', "(include: [\"parts/display.ron\"],", 1)).unwrap();
+    std::fs::write(
+        at("passes/parts/tone.ron"),
+        cycle.replacen('(', "(include: [\"parts/display.ron\"],", 1),
+    )
+    .unwrap();
     for (file, pieces) in [
         ("passes/l.ron", &["x0.glsl > x1.glsl > x2.glsl"][..]),
         ("passes/r0.ron", &["32 deep", "r0.ron > ", "r1.ron > "]),
@@ -308,10 +557,18 @@ fn includes_that_grow_with_a_power_or_go_in_a_circle_end_at_once() {
     ] {
         let begun = Instant::now();
         let output = conelab(home.path()).args(["check", file]).output().unwrap();
-        assert!(begun.elapsed() < Duration::from_secs(20), "{file}: {:?}", begun.elapsed());
+        assert!(
+            begun.elapsed() < Duration::from_secs(20),
+            "{file}: {:?}",
+            begun.elapsed()
+        );
         let text = String::from_utf8_lossy(&output.stdout).into_owned();
         assert_eq!(output.status.code(), Some(1), "{text}");
-        assert_eq!(text.matches("x0.glsl > x1.glsl > x2.glsl").count(), usize::from(file.ends_with("l.ron")), "{text}");
+        assert_eq!(
+            text.matches("x0.glsl > x1.glsl > x2.glsl").count(),
+            usize::from(file.ends_with("l.ron")),
+            "{text}"
+        );
         tells(&text, pieces);
     }
 }
@@ -324,11 +581,22 @@ fn a_damaged_scene_is_one_failed_point_of_a_sweep() {
                  set: {\"size\": (24, 16), \"voxel_dim\": 16, \"shadow_dim\": 256}, \
                  axes: [List(name: \"scene\", values: [\"b.gltf\", \"cornell\"])])";
     let sweep = write(&home, "s.ron", sweep);
-    let told = fails(conelab(home.path()).arg("sweep").arg(sweep).arg("-o").arg(out.path()));
+    let told = fails(
+        conelab(home.path())
+            .arg("sweep")
+            .arg(sweep)
+            .arg("-o")
+            .arg(out.path()),
+    );
     tells(&told, &["1 points failed"]);
     let table = std::fs::read_to_string(out.path().join("sweep.csv")).unwrap();
     tells(&table, &["gone.bin", "cornell"]);
-    assert_eq!(std::fs::read_dir(out.path().join("points")).unwrap().count(), 2);
+    assert_eq!(
+        std::fs::read_dir(out.path().join("points"))
+            .unwrap()
+            .count(),
+        2
+    );
 }
 
 #[test]
@@ -351,15 +619,41 @@ fn texels_of_the_picture_that_are_no_numbers_are_counted() {
     std::fs::write(&shader, text.replace(store, &format!("{wrong}{store}"))).unwrap();
     let render = |more: &[&str]| {
         let mut command = conelab(home.path());
-        command.args(["render", "configs/rays.ron", "--scene", "cornell", "--size", "48x32", "--frames", "1"]);
-        command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=512", "--json", "-"]).args(more).output().unwrap()
+        command.args([
+            "render",
+            "configs/rays.ron",
+            "--scene",
+            "cornell",
+            "--size",
+            "48x32",
+            "--frames",
+            "1",
+        ]);
+        command
+            .args([
+                "--set",
+                "voxel_dim=32",
+                "--set",
+                "shadow_dim=512",
+                "--json",
+                "-",
+            ])
+            .args(more)
+            .output()
+            .unwrap()
     };
     for (output, told) in [
-        ("x.png", "texels of the picture are NaN, or light that its format cannot hold (48)"),
+        (
+            "x.png",
+            "texels of the picture are NaN, or light that its format cannot hold (48)",
+        ),
         ("x.exr", "'radiance' has 48 texels that are NaN or infinite"),
     ] {
         let rendered = render(&["-o", output]);
-        tells(&String::from_utf8(rendered.stderr).unwrap(), &[&format!("warning: {told}\n")]);
+        tells(
+            &String::from_utf8(rendered.stderr).unwrap(),
+            &[&format!("warning: {told}\n")],
+        );
         let stats: serde_json::Value = serde_json::from_slice(&rendered.stdout).unwrap();
         assert_eq!(stats["warnings"], serde_json::json!([told]));
     }

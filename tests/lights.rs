@@ -10,10 +10,17 @@ use std::sync::Arc;
 
 fn session(lab: &Lab, scene: &Arc<Scene>) -> Session {
     // Nothing is kept from frame to frame.
-    let settings =
-        [("voxel_dim", "32"), ("shadow_dim", "512"), ("bounces", "one"), ("gather_frames", "1"), ("pixel_rays", "2")];
+    let settings = [
+        ("voxel_dim", "32"),
+        ("shadow_dim", "512"),
+        ("bounces", "one"),
+        ("gather_frames", "1"),
+        ("pixel_rays", "2"),
+    ];
     let experiment = experiment(&scene.name, (64, 48), &settings);
-    lab.prepare(&experiment, scene.clone(), |_| Ok(vec!["radiance".into()])).unwrap().0
+    lab.prepare(&experiment, scene.clone(), |_| Ok(vec!["radiance".into()]))
+        .unwrap()
+        .0
 }
 
 /// The linear picture after one more frame.
@@ -31,11 +38,16 @@ type Change = (&'static str, fn(&mut Scene));
 fn changed_lights_give_the_picture_of_a_scene_made_so() {
     let lab = lab(root());
     let changes: [Change; 4] = [
-        ("atrium", |s| s.lights[0].direction = Vec3::new(0.4, -0.9, -0.3).normalize()),
+        ("atrium", |s| {
+            s.lights[0].direction = Vec3::new(0.4, -0.9, -0.3).normalize()
+        }),
         ("atrium", |s| s.sky = Vec3::new(0.3, 0.1, 0.0)),
         ("cornell", |s| s.lights[0].position.x += 0.7),
         ("cornell", |s| {
-            s.lights[0].kind = LightKind::Spot { inner: 0.1, outer: 0.6 };
+            s.lights[0].kind = LightKind::Spot {
+                inner: 0.1,
+                outer: 0.6,
+            };
             s.lights[0].color *= Vec3::new(1.0, 0.5, 2.0);
         }),
     ];
@@ -50,10 +62,16 @@ fn changed_lights_give_the_picture_of_a_scene_made_so() {
         let changed = picture(&lab, &mut live);
         let expected = picture(&lab, &mut session(&lab, &after));
         assert!(first != changed, "change {i} of {name} changes nothing");
-        assert!(changed == expected, "change {i} of {name} gives another picture than a scene made so");
+        assert!(
+            changed == expected,
+            "change {i} of {name} gives another picture than a scene made so"
+        );
         // And back.
         assert!(live.set_lights(&before.lights, before.sky));
-        assert!(picture(&lab, &mut live) == first, "change {i} of {name} cannot be undone");
+        assert!(
+            picture(&lab, &mut live) == first,
+            "change {i} of {name} cannot be undone"
+        );
     }
 }
 

@@ -21,9 +21,14 @@ const SIZE: (u32, u32) = (24, 24);
 
 /// A square that faces z, for each material one, that many metres wide and at that z; a lamp that shines along -z with
 /// irradiance pi. `change` may add textures, and what else a file has.
-fn squares(folder: &Path, materials: &[(Value, f32, f32)], change: impl FnOnce(&mut Value)) -> PathBuf {
-    let corners: [f32; 20] =
-        [-0.5, -0.5, 0., 0.5, -0.5, 0., 0.5, 0.5, 0., -0.5, 0.5, 0., 0., 1., 1., 1., 1., 0., 0., 0.];
+fn squares(
+    folder: &Path,
+    materials: &[(Value, f32, f32)],
+    change: impl FnOnce(&mut Value),
+) -> PathBuf {
+    let corners: [f32; 20] = [
+        -0.5, -0.5, 0., 0.5, -0.5, 0., 0.5, 0.5, 0., -0.5, 0.5, 0., 0., 1., 1., 1., 1., 0., 0., 0.,
+    ];
     let mut bytes: Vec<u8> = corners.iter().flat_map(|f| f.to_le_bytes()).collect();
     bytes.extend([0u8, 1, 2, 0, 2, 3]);
     let data = base64::engine::general_purpose::STANDARD.encode(&bytes);
@@ -69,7 +74,10 @@ fn folder() -> TempDir {
 /// An image of 2 x 2 texels as a file's images and textures have it.
 fn add_texture(root: &mut Value, texels: [[u8; 4]; 4]) {
     let mut png = std::io::Cursor::new(Vec::new());
-    image::RgbaImage::from_raw(2, 2, texels.concat()).unwrap().write_to(&mut png, image::ImageFormat::Png).unwrap();
+    image::RgbaImage::from_raw(2, 2, texels.concat())
+        .unwrap()
+        .write_to(&mut png, image::ImageFormat::Png)
+        .unwrap();
     let uri = base64::engine::general_purpose::STANDARD.encode(png.into_inner());
     for list in ["images", "textures"] {
         let count = root[list].as_array().map_or(0, Vec::len);
@@ -106,7 +114,10 @@ fn near(a: impl Into<Vec4>, b: impl Into<Vec4>) {
 #[track_caller]
 fn warns(warnings: &[String], pieces: &[&str]) {
     assert_eq!(warnings.len(), 1, "{warnings:#?}");
-    assert!(pieces.iter().all(|piece| warnings[0].contains(piece)), "{pieces:?} not in {warnings:?}");
+    assert!(
+        pieces.iter().all(|piece| warnings[0].contains(piece)),
+        "{pieces:?} not in {warnings:?}"
+    );
 }
 
 #[test]
@@ -114,12 +125,32 @@ fn dielectrics_reflect_what_index_and_specular_say() {
     let none: [String; 0] = [];
     for (extensions, f0, f90) in [
         (json!({}), Vec3::splat(0.04), 1.0),
-        (json!({ "KHR_materials_ior": { "ior": 1.5 }, "KHR_materials_specular": {} }), Vec3::splat(0.04), 1.0),
-        (json!({ "KHR_materials_ior": { "ior": 2 } }), Vec3::splat(1.0 / 9.0), 1.0),
-        (json!({ "KHR_materials_ior": { "ior": 1 } }), Vec3::ZERO, 1.0),
+        (
+            json!({ "KHR_materials_ior": { "ior": 1.5 }, "KHR_materials_specular": {} }),
+            Vec3::splat(0.04),
+            1.0,
+        ),
+        (
+            json!({ "KHR_materials_ior": { "ior": 2 } }),
+            Vec3::splat(1.0 / 9.0),
+            1.0,
+        ),
+        (
+            json!({ "KHR_materials_ior": { "ior": 1 } }),
+            Vec3::ZERO,
+            1.0,
+        ),
         (json!({ "KHR_materials_ior": { "ior": 0 } }), Vec3::ONE, 1.0),
-        (json!({ "KHR_materials_specular": { "specularFactor": 0.25 } }), Vec3::splat(0.01), 0.25),
-        (json!({ "KHR_materials_specular": { "specularColorFactor": [1, 0.5, 0] } }), Vec3::new(0.04, 0.02, 0.0), 1.0),
+        (
+            json!({ "KHR_materials_specular": { "specularFactor": 0.25 } }),
+            Vec3::splat(0.01),
+            0.25,
+        ),
+        (
+            json!({ "KHR_materials_specular": { "specularColorFactor": [1, 0.5, 0] } }),
+            Vec3::new(0.04, 0.02, 0.0),
+            1.0,
+        ),
         // What the colour makes more than all is all; the factor comes after that.
         (
             json!({ "KHR_materials_specular": { "specularColorFactor": [50, 1, 0], "specularFactor": 0.5 } }),
@@ -130,16 +161,26 @@ fn dielectrics_reflect_what_index_and_specular_say() {
         let (material, warnings) = read(with(extensions), &[]);
         assert_eq!(warnings, none);
         let found = material.dielectric();
-        assert!(found.abs_diff_eq(f0.extend(f90), 1e-7), "{found} is not {f0} and {f90}");
+        assert!(
+            found.abs_diff_eq(f0.extend(f90), 1e-7),
+            "{found} is not {f0} and {f90}"
+        );
     }
-    assert_eq!(Material::default().dielectric().to_array(), [0.04, 0.04, 0.04, 1.0], "to the bit");
+    assert_eq!(
+        Material::default().dielectric().to_array(),
+        [0.04, 0.04, 0.04, 1.0],
+        "to the bit"
+    );
     // Textures count with their mean: alpha 128 of the one, sRGB 188 of the other.
     let textured = json!({ "KHR_materials_specular": {
         "specularTexture": { "index": 0 }, "specularColorTexture": { "index": 1 }, "specularColorFactor": [1, 1, 0.5] } });
     let stripes = [[0, 0, 0, 255], [255; 4], [0, 0, 0, 255], [255; 4]];
     let (material, warnings) = read(with(textured), &[[[9, 9, 9, 128]; 4], stripes]);
     warns(&warnings, &["'m'", "KHR_materials_specular", "mean"]);
-    near(material.specular_color.extend(material.specular), [0.5, 0.5, 0.25, 0.5]);
+    near(
+        material.specular_color.extend(material.specular),
+        [0.5, 0.5, 0.25, 0.5],
+    );
 }
 
 #[test]
@@ -153,15 +194,23 @@ fn emission_has_its_strength_and_unlit_its_base_colour() {
     let (sign, warnings) = read(sign, &[[[255; 4]; 4]]);
     assert!(warnings.is_empty());
     assert_eq!(sign.emission, Vec3::new(0.5, 0.25, 1.0));
-    assert_eq!((sign.base_color, sign.metallic, sign.dielectric()), (Vec4::W, 0.0, Vec4::ZERO));
-    assert!(sign.emission_texture.is_some() && sign.emission_texture == sign.base_color_texture, "the mask stays");
+    assert_eq!(
+        (sign.base_color, sign.metallic, sign.dielectric()),
+        (Vec4::W, 0.0, Vec4::ZERO)
+    );
+    assert!(
+        sign.emission_texture.is_some() && sign.emission_texture == sign.base_color_texture,
+        "the mask stays"
+    );
 }
 
 #[test]
 fn surfaces_that_let_light_through_are_there_or_not() {
-    let glass = |share: f32| with(json!({ "KHR_materials_transmission": { "transmissionFactor": share } }));
+    let glass =
+        |share: f32| with(json!({ "KHR_materials_transmission": { "transmissionFactor": share } }));
     let dielectric = |mut m: Value| {
-        m["pbrMetallicRoughness"] = json!({ "metallicFactor": 0, "baseColorFactor": [0.5, 1, 1, 1] });
+        m["pbrMetallicRoughness"] =
+            json!({ "metallicFactor": 0, "baseColorFactor": [0.5, 1, 1, 1] });
         m
     };
     let (dark, warnings) = read(dielectric(glass(0.4)), &[]);
@@ -174,7 +223,8 @@ fn surfaces_that_let_light_through_are_there_or_not() {
     // Metals let nothing through; the texture's red counts with its mean.
     assert!(read(glass(1.0), &[]).1.is_empty());
     let mut frosted = dielectric(glass(1.0));
-    frosted["extensions"]["KHR_materials_transmission"]["transmissionTexture"] = json!({ "index": 0 });
+    frosted["extensions"]["KHR_materials_transmission"]["transmissionTexture"] =
+        json!({ "index": 0 });
     let (frosted, _) = read(frosted, &[[[51, 255, 255, 255]; 4]]);
     near(frosted.base_color, [0.4, 0.8, 0.8, 1.0]);
     let blend = |alpha: f32| {
@@ -193,13 +243,25 @@ fn obj_opacity_is_there_or_not() {
     let quad = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n";
     let mtl = "newmtl thin\nd 0.3\nnewmtl thick\nTr 0.2\nnewmtl full\nd 1\nTr 0.9\n";
     std::fs::write(dir.path().join("a.mtl"), mtl).unwrap();
-    let obj = format!("mtllib a.mtl\n{quad}usemtl thin\nf 1 2 3\nusemtl thick\nf 1 2 4\nusemtl full\nf 2 3 4\n");
+    let obj = format!(
+        "mtllib a.mtl\n{quad}usemtl thin\nf 1 2 3\nusemtl thick\nf 1 2 4\nusemtl full\nf 2 3 4\n"
+    );
     std::fs::write(dir.path().join("a.obj"), obj).unwrap();
     let scene = open(&dir.path().join("a.obj"));
     assert_eq!(scene.triangle_count(), 2, "the thin one is left out");
     assert_eq!(scene.warnings.len(), 2, "{:?}", scene.warnings);
-    for pieces in [["'thin'", "0.30", "left out"], ["'thick'", "0.80", "opaque"]] {
-        assert!(scene.warnings.iter().any(|w| pieces.iter().all(|p| w.contains(p))), "{pieces:?} {:?}", scene.warnings);
+    for pieces in [
+        ["'thin'", "0.30", "left out"],
+        ["'thick'", "0.80", "opaque"],
+    ] {
+        assert!(
+            scene
+                .warnings
+                .iter()
+                .any(|w| pieces.iter().all(|p| w.contains(p))),
+            "{pieces:?} {:?}",
+            scene.warnings
+        );
     }
 }
 
@@ -219,14 +281,23 @@ fn specular_glossiness_becomes_a_dielectric_of_that_colour() {
         add_texture(root, [[255; 4]; 4]);
         add_texture(root, [[188, 188, 188, 204]; 4]);
     }));
-    warns(&scene.warnings, &["'m'", "KHR_materials_pbrSpecularGlossiness", "mean"]);
+    warns(
+        &scene.warnings,
+        &["'m'", "KHR_materials_pbrSpecularGlossiness", "mean"],
+    );
     let mapped = &scene.materials[0];
     near(mapped.dielectric(), [0.5, 0.5, 0.5, 1.0]);
     near(mapped.base_color, [0.5, 0.5, 0.5, 1.0]);
     let texel = |t: Option<u32>| scene.textures[t.unwrap() as usize].mips[0][..4].to_vec();
     assert_eq!(texel(mapped.base_color_texture), [255; 4]);
     // Glossiness 0.8 of a half: 0.4.
-    assert_eq!((texel(mapped.metallic_roughness_texture)[1], mapped.roughness), (153, 1.0));
+    assert_eq!(
+        (
+            texel(mapped.metallic_roughness_texture)[1],
+            mapped.roughness
+        ),
+        (153, 1.0)
+    );
 }
 
 #[test]
@@ -234,7 +305,10 @@ fn what_is_left_out_is_told_once_and_what_is_required_is_an_error() {
     let fancy = with(json!({
         "KHR_materials_clearcoat": { "clearcoatFactor": 1 }, "KHR_materials_sheen": { "sheenColorFactor": [0, 0, 0] },
         "KHR_materials_iridescence": {} }));
-    warns(&read(fancy, &[]).1, &["'m'", "KHR_materials_clearcoat", "left out"]);
+    warns(
+        &read(fancy, &[]).1,
+        &["'m'", "KHR_materials_clearcoat", "left out"],
+    );
     let dir = folder();
     let required = |extension: &str| {
         let path = squares(dir.path(), &[(json!({}), 1.0, 0.0)], |root| {
@@ -243,22 +317,37 @@ fn what_is_left_out_is_told_once_and_what_is_required_is_an_error() {
         });
         Scene::open(&path.to_string_lossy(), &|_, _| ControlFlow::Continue(()))
     };
-    for supported in ["ior", "specular", "unlit", "transmission", "pbrSpecularGlossiness", "emissive_strength"] {
-        assert!(required(&format!("KHR_materials_{supported}")).is_ok(), "{supported}");
+    for supported in [
+        "ior",
+        "specular",
+        "unlit",
+        "transmission",
+        "pbrSpecularGlossiness",
+        "emissive_strength",
+    ] {
+        assert!(
+            required(&format!("KHR_materials_{supported}")).is_ok(),
+            "{supported}"
+        );
     }
     assert!(required("KHR_materials_clearcoat").is_err());
-    let alone =
-        json!({ "normalTexture": { "index": 0, "extensions": { "KHR_texture_transform": { "scale": [3, 3] } } } });
-    let scene = open(&squares(dir.path(), &[(alone, 1.0, 0.0)], |root| add_texture(root, [[128, 128, 255, 255]; 4])));
-    assert!(scene.warnings.is_empty() && scene.meshes[0].vertices.iter().any(|v| v.uv == [3.0, 3.0]));
+    let alone = json!({ "normalTexture": { "index": 0, "extensions": { "KHR_texture_transform": { "scale": [3, 3] } } } });
+    let scene = open(&squares(dir.path(), &[(alone, 1.0, 0.0)], |root| {
+        add_texture(root, [[128, 128, 255, 255]; 4])
+    }));
+    assert!(
+        scene.warnings.is_empty() && scene.meshes[0].vertices.iter().any(|v| v.uv == [3.0, 3.0])
+    );
 }
 
 #[test]
 fn exported_files_have_the_same_dielectrics() {
     let dir = folder();
     let materials = [
-        with(json!({ "KHR_materials_ior": { "ior": 1.33 }, "KHR_materials_specular": {
-            "specularFactor": 0.75, "specularColorFactor": [1, 0.5, 0.25] } })),
+        with(
+            json!({ "KHR_materials_ior": { "ior": 1.33 }, "KHR_materials_specular": {
+            "specularFactor": 0.75, "specularColorFactor": [1, 0.5, 0.25] } }),
+        ),
         with(json!({ "KHR_materials_unlit": {} })),
         with(json!({})),
     ];
@@ -270,18 +359,34 @@ fn exported_files_have_the_same_dielectrics() {
         let again = open(&dir.path().join(file));
         assert_eq!(again.warnings, scene.warnings);
         for (a, b) in scene.materials.iter().zip(&again.materials) {
-            assert_eq!((a.dielectric(), a.emission), (b.dielectric(), b.emission), "{file}");
-            assert_eq!((a.ior, a.specular, a.specular_color), (b.ior, b.specular, b.specular_color), "{file}");
+            assert_eq!(
+                (a.dielectric(), a.emission),
+                (b.dielectric(), b.emission),
+                "{file}"
+            );
+            assert_eq!(
+                (a.ior, a.specular, a.specular_color),
+                (b.ior, b.specular, b.specular_color),
+                "{file}"
+            );
         }
     }
     let mut other = scene.clone();
     other.materials[2].ior = 1.6;
     assert_ne!(hash(&scene), hash(&other));
-    assert!(scene.summary().contains("reflects [0.015, 0.008, 0.004]"), "{}", scene.summary());
+    assert!(
+        scene.summary().contains("reflects [0.015, 0.008, 0.004]"),
+        "{}",
+        scene.summary()
+    );
 }
 
 /// The method's picture of a part of the light, the reference's, or both.
-fn views(scene: &Scene, settings: &[(&str, &str)], frames: usize) -> (Lab, Experiment, Arc<Scene>, usize) {
+fn views(
+    scene: &Scene,
+    settings: &[(&str, &str)],
+    frames: usize,
+) -> (Lab, Experiment, Arc<Scene>, usize) {
     let defaults = [("voxel_dim", "32"), ("shadow_dim", "256")];
     let mut e = experiment("cornell", SIZE, &[&defaults[..], settings].concat());
     e.camera = CameraChoice::Placed(PlacedCamera::new((0.0, 0.0, 2.0), (0.0, 0.0, 0.0), 20.0));
@@ -289,8 +394,13 @@ fn views(scene: &Scene, settings: &[(&str, &str)], frames: usize) -> (Lab, Exper
 }
 
 /// Texels of one of the method's textures.
-fn method((lab, e, scene, frames): &(Lab, Experiment, Arc<Scene>, usize), texture: &str) -> Vec<[f32; 4]> {
-    let (mut session, _) = lab.prepare(e, scene.clone(), |_| Ok(vec![texture.to_owned()])).unwrap();
+fn method(
+    (lab, e, scene, frames): &(Lab, Experiment, Arc<Scene>, usize),
+    texture: &str,
+) -> Vec<[f32; 4]> {
+    let (mut session, _) = lab
+        .prepare(e, scene.clone(), |_| Ok(vec![texture.to_owned()]))
+        .unwrap();
     for _ in 0..*frames {
         session.frame(0.0).unwrap();
     }
@@ -300,10 +410,17 @@ fn method((lab, e, scene, frames): &(Lab, Experiment, Arc<Scene>, usize), textur
 }
 
 /// Of one part of the reference.
-fn reference((_, e, scene, _): &(Lab, Experiment, Arc<Scene>, usize), part: &str, samples: u64) -> Vec<[f32; 3]> {
+fn reference(
+    (_, e, scene, _): &(Lab, Experiment, Arc<Scene>, usize),
+    part: &str,
+    samples: u64,
+) -> Vec<[f32; 3]> {
     let home = common::home();
     let lab = lab(home.path());
-    let found = gather(&lab, e, scene, 1, Goal::Samples(samples), &mut |_| ControlFlow::Continue(())).unwrap();
+    let found = gather(&lab, e, scene, 1, Goal::Samples(samples), &mut |_| {
+        ControlFlow::Continue(())
+    })
+    .unwrap();
     assert_clean(&lab);
     found.parts[part].mean.rgb.clone()
 }
@@ -335,8 +452,18 @@ fn specular_light_is_what_the_formula_says() {
     let ior = json!({ "KHR_materials_ior": { "ior": 2 } });
     for (what, material, albedo, f0) in [
         ("default", surface(0.0, black, json!({})), 0.0, [0.04; 3]),
-        ("ior 2", surface(0.0, black, ior.clone()), 0.0, [1.0 / 9.0; 3]),
-        ("ior 2, half a metal", surface(0.5, [0.5; 3], ior), 0.25, [0.5 / 9.0 + 0.25; 3]),
+        (
+            "ior 2",
+            surface(0.0, black, ior.clone()),
+            0.0,
+            [1.0 / 9.0; 3],
+        ),
+        (
+            "ior 2, half a metal",
+            surface(0.5, [0.5; 3], ior),
+            0.25,
+            [0.5 / 9.0 + 0.25; 3],
+        ),
         (
             "specular",
             surface(
@@ -354,13 +481,25 @@ fn specular_light_is_what_the_formula_says() {
             let multiple = 1.0 + f * (1.0 / (single.0 + single.1) - 1.0);
             albedo * (1.0 - (f * single.0 + single.1) * multiple) + lobe * f * multiple
         });
-        let mut found = vec![("reference", centre(&reference(&views(&scene, &[], 1), "direct", 4)))];
+        let mut found = vec![(
+            "reference",
+            centre(&reference(&views(&scene, &[], 1), "direct", 4)),
+        )];
         for gbuffer in ["raster", "compute"] {
-            found.push((gbuffer, centre(&method(&views(&scene, &[("gbuffer", gbuffer)], 1), "direct"))));
+            found.push((
+                gbuffer,
+                centre(&method(
+                    &views(&scene, &[("gbuffer", gbuffer)], 1),
+                    "direct",
+                )),
+            ));
         }
         for (by, found) in found {
             println!("{what}, {by}: {found:.4?} of {expected:.4?}");
-            let far = found.iter().zip(&expected).any(|(a, b)| (a - b).abs() > 0.004 * b + 1e-4);
+            let far = found
+                .iter()
+                .zip(&expected)
+                .any(|(a, b)| (a - b).abs() > 0.004 * b + 1e-4);
             assert!(!far, "{what}, {by}: {found:?} is not {expected:?}");
         }
     }
@@ -382,9 +521,13 @@ fn reflected_sky_is_the_same_in_method_and_reference() {
         let views = views(&lit(surface, 1.0), &[], 20);
         let cones = mean(&method(&views, "specularIndirect"));
         let traced = reference(&views, "specular", 256);
-        let traced = traced.iter().flatten().map(|v| f64::from(*v)).sum::<f64>() / (3 * traced.len()) as f64;
+        let traced =
+            traced.iter().flatten().map(|v| f64::from(*v)).sum::<f64>() / (3 * traced.len()) as f64;
         println!("{what}: {cones:.4}, traced {traced:.4}");
-        assert!((cones / traced - 1.0).abs() < 0.03, "{what}: {cones} and {traced}");
+        assert!(
+            (cones / traced - 1.0).abs() < 0.03,
+            "{what}: {cones} and {traced}"
+        );
         assert!(traced > 1.5 * last, "{what}: {traced} after {last}");
         last = traced;
     }
@@ -398,7 +541,10 @@ fn unlit_surfaces_have_their_base_colour_in_any_light() {
     let mut views = views(&lit(sign, 1.0), &[], 2);
     // Nearly edge-on, where everything else mirrors.
     views.1.camera = CameraChoice::Placed(PlacedCamera::new((1.0, 0.0, 0.1), (0.0, 0.0, 0.0), 2.0));
-    let (shown, traced) = (centre(&method(&views, "radiance")), centre(&reference(&views, "total", 4)));
+    let (shown, traced) = (
+        centre(&method(&views, "radiance")),
+        centre(&reference(&views, "total", 4)),
+    );
     println!("{shown:?}, traced {traced:?}");
     assert_eq!(shown, color.map(f64::from));
     assert_eq!(traced, color.map(f64::from));
@@ -417,17 +563,27 @@ fn a_clear_pane_before_a_lamp_hides_nothing() {
     };
     let open = scene(&[(lamp.clone(), 1.0, 0.0)]);
     let mut masked = scene(&[(lamp.clone(), 1.0, 0.0), (json!({}), 0.8, 0.5)]);
-    masked.materials[1] = Material { base_color: Vec4::ZERO, alpha_cutoff: 0.5, ..Material::default() };
+    masked.materials[1] = Material {
+        base_color: Vec4::ZERO,
+        alpha_cutoff: 0.5,
+        ..Material::default()
+    };
     let closed = scene(&[(lamp, 1.0, 0.0), (pane, 0.8, 0.5)]);
     let picture = |scene: &Scene| {
         let views = views(scene, &[], 2);
-        (centre(&method(&views, "radiance")), centre(&reference(&views, "total", 4)))
+        (
+            centre(&method(&views, "radiance")),
+            centre(&reference(&views, "total", 4)),
+        )
     };
     let expected = picture(&open);
     assert!(expected.0[0] > 1.0, "the lamp is seen, in light");
     assert_eq!(picture(&closed), expected);
     // What a file does not have, a scene may: a mask that cuts everything out.
     let masked = picture(&masked);
-    assert!((0..3).all(|i| (masked.0[i] / expected.0[i] - 1.0).abs() < 0.01), "{masked:?} {expected:?}");
+    assert!(
+        (0..3).all(|i| (masked.0[i] / expected.0[i] - 1.0).abs() < 0.01),
+        "{masked:?} {expected:?}"
+    );
     assert_eq!(masked.1, expected.1);
 }

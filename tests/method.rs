@@ -30,21 +30,31 @@ fn frames(lab: &Lab, experiment: &Experiment, wanted: &[&str], count: usize) -> 
 
 /// A Cornell box with a moving ball, a point light and a spot light, both with shadows.
 fn workshop() -> String {
-    root().join("configs/scenes/workshop.ron").to_string_lossy().into_owned()
+    root()
+        .join("configs/scenes/workshop.ron")
+        .to_string_lossy()
+        .into_owned()
 }
 
 /// Cells that hold a voxel.
 fn occupied(session: &mut Session) -> BTreeSet<[u32; 3]> {
     let texels = session.texels("voxelIndex", 0, 0).unwrap();
     let [w, h, _] = texels.extent;
-    let set = texels.bytes.chunks_exact(4).zip(0u32..).filter(|(t, _)| **t != [0; 4]);
+    let set = texels
+        .bytes
+        .chunks_exact(4)
+        .zip(0u32..)
+        .filter(|(t, _)| **t != [0; 4]);
     set.map(|(_, i)| [i % w, i / w % h, i / w / h]).collect()
 }
 
 /// Neither black nor broken.
 #[track_caller]
 fn assert_picture(texels: &[[f32; 4]], what: &str) {
-    assert!(texels.iter().flatten().all(|v| v.is_finite()), "{what}: not a number");
+    assert!(
+        texels.iter().flatten().all(|v| v.is_finite()),
+        "{what}: not a number"
+    );
     let mean = mean(texels);
     assert!(mean > 0.002, "{what}: the picture is black ({mean})");
 }
@@ -62,15 +72,28 @@ fn the_furnace_keeps_its_energy() {
         ("63", "compute"),
         ("64", "tessellated"),
     ] {
-        let settings = [("voxel_dim", dim), ("voxelizer", voxelizer), ("bounces", "one"), QUICK];
-        let mut session = frames(&lab, &experiment("furnace", (64, 48), &settings), &["radiance"], 1);
+        let settings = [
+            ("voxel_dim", dim),
+            ("voxelizer", voxelizer),
+            ("bounces", "one"),
+            QUICK,
+        ];
+        let mut session = frames(
+            &lab,
+            &experiment("furnace", (64, 48), &settings),
+            &["radiance"],
+            1,
+        );
         let ratio = mean(&floats(&mut session, "radiance", 0)) / 1.5;
         println!("furnace, {voxelizer} at {dim}: energy ratio {ratio:.4}");
         if (ratio - 1.0).abs() > 0.03 {
             wrong.push(format!("{voxelizer} at {dim}: {ratio:.4}"));
         }
     }
-    assert!(wrong.is_empty(), "energy ratios outside 1 +- 0.03: {wrong:?}");
+    assert!(
+        wrong.is_empty(),
+        "energy ratios outside 1 +- 0.03: {wrong:?}"
+    );
 }
 
 /// T1 and T8. Light that is reflected again and again: emission 1 and reflectance 0.5 make 1 / (1 - 0.5) = 2, never more, and
@@ -80,8 +103,20 @@ fn bounces_fill_the_furnace_and_rest() {
     let lab = lab(root());
     let mut wrong = Vec::new();
     for (dim, voxelizer) in [("32", "raster"), ("64", "raster"), ("32", "tessellated")] {
-        let turns = [("bounce_frames", "4"), ("gather_frames", "4"), ("pixel_rays", "4")];
-        let settings = [&turns[..], &[("voxel_dim", dim), ("voxelizer", voxelizer), ("reflectance", "base"), QUICK]];
+        let turns = [
+            ("bounce_frames", "4"),
+            ("gather_frames", "4"),
+            ("pixel_rays", "4"),
+        ];
+        let settings = [
+            &turns[..],
+            &[
+                ("voxel_dim", dim),
+                ("voxelizer", voxelizer),
+                ("reflectance", "base"),
+                QUICK,
+            ],
+        ];
         let e = experiment("furnace", (64, 48), &settings.concat());
         let mut session = prepare(&lab, &e, &["diffuseIndirect", "radiance"]);
         let (mut energy, mut last) = (Vec::new(), Vec::new());
@@ -93,32 +128,57 @@ fn bounces_fill_the_furnace_and_rest() {
         }
         println!("furnace, {voxelizer} at {dim}: {:.4?}", &energy[..10]);
         println!("    at last {:.4}", energy[159]);
-        if (energy[159] / 2.0 - 1.0).abs() > 0.02 || energy.windows(2).any(|e| e[1] < e[0] * 0.999) {
+        if (energy[159] / 2.0 - 1.0).abs() > 0.02 || energy.windows(2).any(|e| e[1] < e[0] * 0.999)
+        {
             wrong.push(format!("{voxelizer} at {dim}: {:.4}", energy[159]));
         }
-        let rests = last.iter().rposition(|l| *l != last[159]).map_or(0, |i| i + 1);
+        let rests = last
+            .iter()
+            .rposition(|l| *l != last[159])
+            .map_or(0, |i| i + 1);
         println!("    rests after {rests} frames");
-        assert!(rests < 150, "{voxelizer} at {dim}: still changes after {rests} frames");
+        assert!(
+            rests < 150,
+            "{voxelizer} at {dim}: still changes after {rests} frames"
+        );
     }
     assert_clean(&lab);
-    assert!(wrong.is_empty(), "radiance outside 2 +- 0.04, or falling: {wrong:?}");
+    assert!(
+        wrong.is_empty(),
+        "radiance outside 2 +- 0.04, or falling: {wrong:?}"
+    );
 }
 
 /// In its first frames every voxel gathers, so that light has gone round as often as there were frames, everywhere alike.
 #[test]
 fn the_first_frames_have_no_voxels_that_wait() {
     let lab = lab(root());
-    let settings = [("voxel_dim", "32"), ("reflectance", "base"), ("gather_frames", "1"), ("pixel_rays", "2"), QUICK];
-    let mut session = prepare(&lab, &experiment("furnace", (64, 48), &settings), &["diffuseIndirect"]);
+    let settings = [
+        ("voxel_dim", "32"),
+        ("reflectance", "base"),
+        ("gather_frames", "1"),
+        ("pixel_rays", "2"),
+        QUICK,
+    ];
+    let mut session = prepare(
+        &lab,
+        &experiment("furnace", (64, 48), &settings),
+        &["diffuseIndirect"],
+    );
     for frame in 0..8 {
         session.frame(0.0).unwrap();
         session.finish().unwrap();
-        let light: Vec<f64> =
-            floats(&mut session, "diffuseIndirect", 0).iter().map(|t| f64::from(t[0] + t[1] + t[2]) / 3.0).collect();
+        let light: Vec<f64> = floats(&mut session, "diffuseIndirect", 0)
+            .iter()
+            .map(|t| f64::from(t[0] + t[1] + t[2]) / 3.0)
+            .collect();
         let expected = 1.0 - 0.5f64.powi(frame + 1); // 1/2 + 1/4 + ...
         let [least, most] = [f64::min, f64::max].map(|f| light.iter().copied().reduce(f).unwrap());
         println!("frame {frame}: {least:.4} to {most:.4} of {expected:.4}");
-        assert!(least > 0.97 * expected && most < 1.03 * expected, "frame {frame}: {least} to {most}, not {expected}");
+        assert!(
+            least > 0.97 * expected && most < 1.03 * expected,
+            "frame {frame}: {least} to {most}, not {expected}"
+        );
     }
     assert_clean(&lab);
 }
@@ -126,12 +186,26 @@ fn the_first_frames_have_no_voxels_that_wait() {
 #[test]
 fn a_picture_stores_one_image_and_each_is_the_same_alone() {
     let lab = lab(root());
-    let all = ["radiance", "direct", "diffuseIndirect", "specularIndirect", "occlusion", "surfaceNormal"];
+    let all = [
+        "radiance",
+        "direct",
+        "diffuseIndirect",
+        "specularIndirect",
+        "occlusion",
+        "surfaceNormal",
+    ];
     let e = experiment("cornell", (64, 48), &[("voxel_dim", "32"), QUICK]);
     let mut together = frames(&lab, &e, &all, 1);
     let made = |session: &Session| -> Vec<&str> {
-        let memory: Vec<String> = session.program.memory(&session.graph).into_iter().map(|m| m.0).collect();
-        all.into_iter().filter(|name| memory.iter().any(|m| m == name)).collect()
+        let memory: Vec<String> = session
+            .program
+            .memory(&session.graph)
+            .into_iter()
+            .map(|m| m.0)
+            .collect();
+        all.into_iter()
+            .filter(|name| memory.iter().any(|m| m == name))
+            .collect()
     };
     assert_eq!(made(&together), all);
     assert_eq!(made(&frames(&lab, &e, &["display"], 1)), ["radiance"]);
@@ -150,12 +224,29 @@ fn a_white_sphere_vanishes_under_a_white_sky() {
     for dim in ["32", "64"] {
         let settings = [("voxel_dim", dim), QUICK];
         let wanted = ["radiance", "occlusion", "surfaceNormal"];
-        let mut session = frames(&lab, &experiment("white-sky", (64, 64), &settings), &wanted, 1);
-        let covered: Vec<bool> = floats(&mut session, "surfaceNormal", 0).iter().map(|t| t[3] > 0.5).collect();
+        let mut session = frames(
+            &lab,
+            &experiment("white-sky", (64, 64), &settings),
+            &wanted,
+            1,
+        );
+        let covered: Vec<bool> = floats(&mut session, "surfaceNormal", 0)
+            .iter()
+            .map(|t| t[3] > 0.5)
+            .collect();
         for name in ["radiance", "occlusion"] {
             let texels = floats(&mut session, name, 0);
-            let sphere: Vec<[f32; 4]> = texels.iter().zip(&covered).filter(|(_, c)| **c).map(|(t, _)| *t).collect();
-            assert!(sphere.len() > 500, "the sphere covers {} pixels", sphere.len());
+            let sphere: Vec<[f32; 4]> = texels
+                .iter()
+                .zip(&covered)
+                .filter(|(_, c)| **c)
+                .map(|(t, _)| *t)
+                .collect();
+            assert!(
+                sphere.len() > 500,
+                "the sphere covers {} pixels",
+                sphere.len()
+            );
             let ratio = mean(&sphere);
             let least = sphere.iter().map(|t| t[0]).fold(f32::MAX, f32::min);
             println!("white sky at {dim}: mean {name} {ratio:.4}, least {least:.4}");
@@ -176,15 +267,31 @@ fn share(a: &BTreeSet<[u32; 3]>, b: &BTreeSet<[u32; 3]>) -> f64 {
 fn every_conservative_mode_runs_or_says_why_not() {
     let lab = lab(root());
     for mode in ["msaa", "off", "hardware", "dilate"] {
-        let settings = [("voxel_dim", "32"), ("voxelizer", "raster"), ("conservative", mode), QUICK];
+        let settings = [
+            ("voxel_dim", "32"),
+            ("voxelizer", "raster"),
+            ("conservative", mode),
+            QUICK,
+        ];
         let experiment = experiment("cornell", (48, 32), &settings);
         if mode == "hardware" && !lab.gpu.info.features.conservative_rasterization {
-            let result = lab.prepare(&experiment, scene("cornell"), |_| Ok(vec!["radiance".into()]));
-            let Err(LabError::Input(errors)) = result else { panic!("no error without the extension") };
-            let text = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+            let result = lab.prepare(&experiment, scene("cornell"), |_| {
+                Ok(vec!["radiance".into()])
+            });
+            let Err(LabError::Input(errors)) = result else {
+                panic!("no error without the extension")
+            };
+            let text = errors
+                .iter()
+                .map(ToString::to_string)
+                .collect::<Vec<_>>()
+                .join("\n");
             assert!(text.contains("VK_EXT_conservative_rasterization"), "{text}");
             assert!(text.contains("conservative=msaa|off|dilate"), "{text}");
-            println!("skipped: {} has no VK_EXT_conservative_rasterization, which the error says", lab.gpu.info.name);
+            println!(
+                "skipped: {} has no VK_EXT_conservative_rasterization, which the error says",
+                lab.gpu.info.name
+            );
             continue;
         }
         let mut session = frames(&lab, &experiment, &["voxelIndex", "radiance"], 2);
@@ -199,19 +306,37 @@ fn every_merge_rule_keeps_the_colours() {
     for merge in ["average", "running_average", "maximum"] {
         for voxelizer in ["raster", "tessellated"] {
             let what = format!("{merge}, {voxelizer}");
-            let settings = [("voxel_dim", "32"), ("merge", merge), ("voxelizer", voxelizer), QUICK];
+            let settings = [
+                ("voxel_dim", "32"),
+                ("merge", merge),
+                ("voxelizer", voxelizer),
+                QUICK,
+            ];
             let experiment = experiment("cornell", (48, 32), &settings);
-            let mut session = frames(&lab, &experiment, &["voxelIndex", "voxelColor", "radiance"], 2);
+            let mut session = frames(
+                &lab,
+                &experiment,
+                &["voxelIndex", "voxelColor", "radiance"],
+                2,
+            );
             let cells = occupied(&mut session);
             let colours = floats(&mut session, "voxelColor", 0);
-            let in_cells: Vec<[f32; 4]> =
-                cells.iter().map(|[x, y, z]| colours[((z * 32 + y) * 32 + x) as usize]).collect();
+            let in_cells: Vec<[f32; 4]> = cells
+                .iter()
+                .map(|[x, y, z]| colours[((z * 32 + y) * 32 + x) as usize])
+                .collect();
             // The box is white, red, green: means lie between its darkest and lightest albedo.
             let mean = mean(&in_cells);
             println!("{what}: {} voxels of mean albedo {mean:.3}", cells.len());
             assert!((0.4..0.75).contains(&mean), "{what}: mean albedo {mean:.3}");
-            assert!(in_cells.iter().filter(|c| c[0] > 2.0 * c[1]).count() > 100, "{what}: no red wall");
-            assert!(in_cells.iter().filter(|c| c[1] > 2.0 * c[0]).count() > 100, "{what}: no green wall");
+            assert!(
+                in_cells.iter().filter(|c| c[0] > 2.0 * c[1]).count() > 100,
+                "{what}: no red wall"
+            );
+            assert!(
+                in_cells.iter().filter(|c| c[1] > 2.0 * c[0]).count() > 100,
+                "{what}: no green wall"
+            );
             assert_picture(&floats(&mut session, "radiance", 0), &what);
         }
     }
@@ -223,16 +348,29 @@ fn every_warp_runs_with_every_voxelizer() {
     for warp in ["none", "spline", "logistic", "perspective", "spherical"] {
         for voxelizer in ["raster", "tessellated", "compute"] {
             let what = format!("{warp}, {voxelizer}");
-            let mut settings = vec![("voxel_dim", "32"), ("warp", warp), ("voxelizer", voxelizer), QUICK];
+            let mut settings = vec![
+                ("voxel_dim", "32"),
+                ("warp", warp),
+                ("voxelizer", voxelizer),
+                QUICK,
+            ];
             if warp == "perspective" || warp == "spherical" {
                 // From before the box to its back wall.
                 settings.extend([("warp_near", "6.0"), ("warp_far", "16.0")]);
             }
             let experiment = experiment("cornell", (48, 32), &settings);
-            let mut session = frames(&lab, &experiment, &["voxelIndex", "radiance", "diffuseIndirect"], 2);
+            let mut session = frames(
+                &lab,
+                &experiment,
+                &["voxelIndex", "radiance", "diffuseIndirect"],
+                2,
+            );
             let voxels = occupied(&mut session).len();
             let indirect = floats(&mut session, "diffuseIndirect", 0);
-            println!("{what}: {voxels} voxels, mean diffuse indirect {:.4}", mean(&indirect));
+            println!(
+                "{what}: {voxels} voxels, mean diffuse indirect {:.4}",
+                mean(&indirect)
+            );
             assert!(voxels > 500, "{what}: {voxels} voxels");
             assert_picture(&floats(&mut session, "radiance", 0), &what);
             assert_picture(&indirect, &what);
@@ -258,14 +396,24 @@ fn the_temporal_filter_forgets_at_its_rate() {
     for frame in 0..6 {
         filtered.frame(if frame == 0 { 1.0 } else { 0.0 }).unwrap();
         let now = floats(&mut filtered, "voxelRadiance", 0);
-        let sum: f64 = now.iter().zip(&still).map(|(a, b)| f64::from((a[0] - b[0]).abs() + (a[3] - b[3]).abs())).sum();
+        let sum: f64 = now
+            .iter()
+            .zip(&still)
+            .map(|(a, b)| f64::from((a[0] - b[0]).abs() + (a[3] - b[3]).abs()))
+            .sum();
         differences.push(sum);
     }
     println!("differences from the unfiltered radiance: {differences:.4?}");
-    assert!(differences[0] > 10.0, "the ball does not move: {differences:?}");
+    assert!(
+        differences[0] > 10.0,
+        "the ball does not move: {differences:?}"
+    );
     for pair in differences.windows(2) {
         let rate = pair[1] / pair[0];
-        assert!((rate - 0.5).abs() < 0.02, "shrinks by {rate:.3}: {differences:?}");
+        assert!(
+            (rate - 0.5).abs() < 0.02,
+            "shrinks by {rate:.3}: {differences:?}"
+        );
     }
     assert_picture(&floats(&mut filtered, "radiance", 0), "temporal");
     assert_clean(&lab);
@@ -277,17 +425,30 @@ fn the_volume_that_follows_the_camera_moves_by_whole_voxels() {
     let mut sets = Vec::new();
     // The camera moves by less than a voxel (0.25 m), then by one.
     for x in [2.76, 2.80, 3.05] {
-        let settings =
-            [("voxel_dim", "32"), ("volume", "camera"), ("volume_size", "(8, 8, 8)"), ("volume_snap", "voxel"), QUICK];
+        let settings = [
+            ("voxel_dim", "32"),
+            ("volume", "camera"),
+            ("volume_size", "(8, 8, 8)"),
+            ("volume_snap", "voxel"),
+            QUICK,
+        ];
         let mut experiment = experiment("cornell", (48, 32), &settings);
-        experiment.camera = CameraChoice::Placed(PlacedCamera::new((x, 2.73, 1.0), (2.78, 2.73, 5.0), 60.0));
+        experiment.camera =
+            CameraChoice::Placed(PlacedCamera::new((x, 2.73, 1.0), (2.78, 2.73, 5.0), 60.0));
         let mut session = frames(&lab, &experiment, &["voxelIndex", "radiance"], 2);
         assert_picture(&floats(&mut session, "radiance", 0), "camera volume");
         sets.push(occupied(&mut session));
     }
     assert!(sets[0].len() > 1000, "{} voxels", sets[0].len());
-    assert!(sets[0] == sets[1], "a move of less than a voxel changes voxels");
-    let moved: BTreeSet<[u32; 3]> = sets[0].iter().filter(|c| c[0] > 0).map(|[x, y, z]| [x - 1, *y, *z]).collect();
+    assert!(
+        sets[0] == sets[1],
+        "a move of less than a voxel changes voxels"
+    );
+    let moved: BTreeSet<[u32; 3]> = sets[0]
+        .iter()
+        .filter(|c| c[0] > 0)
+        .map(|[x, y, z]| [x - 1, *y, *z])
+        .collect();
     let same = share(&moved, &sets[2]);
     println!("voxels that a move by one voxel shifts by one cell: {same:.4}");
     assert!(same > 0.999, "{same}");
@@ -303,29 +464,56 @@ fn a_list_that_is_full_is_told() {
     session.finish().unwrap();
     let failed = session.failed_checks().unwrap();
     assert_eq!(failed.len(), 1, "{failed:?}");
-    assert!(failed[0].starts_with("voxels were dropped: ") && failed[0].contains("raise voxel_capacity"), "{failed:?}");
+    assert!(
+        failed[0].starts_with("voxels were dropped: ")
+            && failed[0].contains("raise voxel_capacity"),
+        "{failed:?}"
+    );
     assert_clean(&lab);
 }
 
 #[test]
 fn every_view_shows_something() {
     let lab = lab(root());
-    let views = ["shaded", "direct", "diffuse", "specular", "occlusion", "normal", "depth"];
+    let views = [
+        "shaded",
+        "direct",
+        "diffuse",
+        "specular",
+        "occlusion",
+        "normal",
+        "depth",
+    ];
     let mut all: Vec<Vec<(&str, &str)>> = views.iter().map(|v| vec![("view", *v)]).collect();
-    all.extend(["radiance", "color", "normal", "alpha"].map(|v| vec![("view", "voxels"), ("voxel_view", v)]));
+    all.extend(
+        ["radiance", "color", "normal", "alpha"]
+            .map(|v| vec![("view", "voxels"), ("voxel_view", v)]),
+    );
     for mip in ["2", "4", "9"] {
-        all.extend(
-            ["radiance", "color", "normal", "alpha"]
-                .map(|v| vec![("view", "voxels"), ("voxel_view", v), ("voxel_view_mip", mip)]),
-        );
+        all.extend(["radiance", "color", "normal", "alpha"].map(|v| {
+            vec![
+                ("view", "voxels"),
+                ("voxel_view", v),
+                ("voxel_view_mip", mip),
+            ]
+        }));
     }
     all.push(vec![("view", "voxels"), ("voxelizer", "tessellated")]);
     all.push(vec![("density", "surfaces"), ("warp", "spline")]);
-    all.push(vec![("density", "voxels"), ("view", "voxels"), ("warp", "spline")]);
+    all.push(vec![
+        ("density", "voxels"),
+        ("view", "voxels"),
+        ("warp", "spline"),
+    ]);
     for settings in all {
         let what = format!("{settings:?}");
         let settings = [&[("voxel_dim", "32"), QUICK], &settings[..]].concat();
-        let mut session = frames(&lab, &experiment(&workshop(), (64, 48), &settings), &["display"], 1);
+        let mut session = frames(
+            &lab,
+            &experiment(&workshop(), (64, 48), &settings),
+            &["display"],
+            1,
+        );
         assert_picture(&floats(&mut session, "display", 0), &what);
     }
 }
@@ -340,8 +528,15 @@ fn cubes_are_seen_from_within_one() {
     let middle = 0.5 * (low + high);
     let eye = Vec3::new(low.x + 0.002 * (high.x - low.x), middle.y, middle.z);
     experiment.camera = CameraChoice::Placed(PlacedCamera::new(eye.into(), middle.into(), 60.0));
-    let texels = floats(&mut frames(&lab, &experiment, &["voxelView"], 1), "voxelView", 0);
-    let colours: BTreeSet<[u32; 3]> = texels.iter().map(|t| [t[0], t[1], t[2]].map(f32::to_bits)).collect();
+    let texels = floats(
+        &mut frames(&lab, &experiment, &["voxelView"], 1),
+        "voxelView",
+        0,
+    );
+    let colours: BTreeSet<[u32; 3]> = texels
+        .iter()
+        .map(|t| [t[0], t[1], t[2]].map(f32::to_bits))
+        .collect();
     println!("{} colours", colours.len());
     // One cube has as many as five, by its faces.
     assert!(colours.len() > 8, "nothing but {colours:?}");
@@ -350,37 +545,79 @@ fn cubes_are_seen_from_within_one() {
 #[test]
 fn cubes_stand_where_their_level_has_opacity() {
     let lab = lab(root());
-    for (dim, mip, mips) in [(32, 0, "isotropic"), (32, 2, "isotropic"), (48, 5, "isotropic"), (32, 3, "anisotropic")] {
+    for (dim, mip, mips) in [
+        (32, 0, "isotropic"),
+        (32, 2, "isotropic"),
+        (48, 5, "isotropic"),
+        (32, 3, "anisotropic"),
+    ] {
         let what = format!("level {mip} of {dim}, {mips}");
         let (size, level) = (dim.to_string(), mip.to_string());
-        let settings = [("voxel_dim", size.as_str()), ("voxel_view_mip", &level), ("mips", mips)];
+        let settings = [
+            ("voxel_dim", size.as_str()),
+            ("voxel_view_mip", &level),
+            ("mips", mips),
+        ];
         let view = [("view", "voxels"), ("voxel_view", "color"), QUICK];
         let experiment = experiment("cornell", (64, 48), &[&settings[..], &view[..]].concat());
-        let wanted = ["display", "voxelCubes", "voxelRadiance", "voxelAttribute", "voxelColor"];
+        let wanted = [
+            "display",
+            "voxelCubes",
+            "voxelRadiance",
+            "voxelAttribute",
+            "voxelColor",
+        ];
         let mut session = frames(&lab, &experiment, &wanted, 1);
         let texels = floats(&mut session, "voxelRadiance", mip);
         let (cells, faces) = (dim >> mip, if mips == "anisotropic" { 6 } else { 1 });
         // A row of the texture: the cells as rays along +x find them, then along -x and so on.
         let width = texels.len() / (cells * cells);
-        let face_of = |i: usize, face: usize| texels[i / cells * width + face * cells + i % cells][3];
+        let face_of =
+            |i: usize, face: usize| texels[i / cells * width + face * cells + i % cells][3];
         let holds = |i: usize| (0..faces).any(|face| face_of(i, face) > 0.0);
-        let expected: BTreeSet<u32> =
-            (0u32..).zip(0..cells * cells * cells).filter(|(_, i)| holds(*i)).map(|(i, _)| i).collect();
-        let buffer = session.graph.buffers.iter().position(|b| b.0 == "voxelCubes").unwrap();
+        let expected: BTreeSet<u32> = (0u32..)
+            .zip(0..cells * cells * cells)
+            .filter(|(_, i)| holds(*i))
+            .map(|(i, _)| i)
+            .collect();
+        let buffer = session
+            .graph
+            .buffers
+            .iter()
+            .position(|b| b.0 == "voxelCubes")
+            .unwrap();
         let bytes = session.program.read_buffer(buffer).unwrap();
-        let words: Vec<u32> = bytes.chunks_exact(4).map(|b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]])).collect();
-        assert_eq!(words[..5], [36, expected.len() as u32, 0, 0, expected.len() as u32], "{what}");
+        let words: Vec<u32> = bytes
+            .chunks_exact(4)
+            .map(|b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]]))
+            .collect();
+        assert_eq!(
+            words[..5],
+            [36, expected.len() as u32, 0, 0, expected.len() as u32],
+            "{what}"
+        );
         let cubes: BTreeSet<u32> = words[5..5 + expected.len()].iter().copied().collect();
         println!("{what}: {} cubes", cubes.len());
-        assert!(cubes == expected, "{what}: cubes are not where there is opacity");
+        assert!(
+            cubes == expected,
+            "{what}: cubes are not where there is opacity"
+        );
         // Filtering keeps the sum: the mean over all cells is that of the finest level.
         let mean_color = |texels: &[[f32; 4]]| {
-            let sum = texels.iter().fold(Vec3::ZERO, |sum, t| sum + Vec3::from_slice(&t[..3]));
+            let sum = texels
+                .iter()
+                .fold(Vec3::ZERO, |sum, t| sum + Vec3::from_slice(&t[..3]));
             sum / texels.len() as f32
         };
-        let (finest, shown) = (floats(&mut session, "voxelColor", 0), floats(&mut session, "voxelAttribute", mip));
+        let (finest, shown) = (
+            floats(&mut session, "voxelColor", 0),
+            floats(&mut session, "voxelAttribute", mip),
+        );
         let (a, b) = (mean_color(&finest), mean_color(&shown));
-        assert!((a - b).abs().max_element() < 0.01 * a.max_element(), "{what}: mean colour {a} became {b}");
+        assert!(
+            (a - b).abs().max_element() < 0.01 * a.max_element(),
+            "{what}: mean colour {a} became {b}"
+        );
     }
 }
 
@@ -409,11 +646,19 @@ fn the_preview_shows_every_scene_on_the_plainest_device() {
         let mut session = frames(&lab, &experiment, &["display"], 1);
         assert_picture(&floats(&mut session, "display", 0), name);
     }
-    let Loaded { graph, linked, warnings } = lab.home.load("preview.ron").unwrap();
+    let Loaded {
+        graph,
+        linked,
+        warnings,
+    } = lab.home.load("preview.ron").unwrap();
     assert_eq!(warnings, []);
     let params = graph.params.clone();
     let device = DeviceInfo::imaginary(Features::default());
-    let set = Evaluated::new(&graph, &params, environment(&scene("cornell"), (64, 48), &device));
+    let set = Evaluated::new(
+        &graph,
+        &params,
+        environment(&scene("cornell"), (64, 48), &device),
+    );
     plan(&set, &linked, &["display".into()], &device).unwrap();
 }
 
@@ -421,10 +666,19 @@ fn the_preview_shows_every_scene_on_the_plainest_device() {
 #[test]
 fn no_voxel_is_lit_by_not_a_number() {
     let lab = lab(root());
-    let (experiment, scene) = (experiment("cornell", (16, 12), &[("voxel_dim", "128")]), scene("cornell"));
-    let (mut session, _) = lab.prepare(&experiment, scene, |_| Ok(vec!["voxelRadiance".into()])).unwrap();
+    let (experiment, scene) = (
+        experiment("cornell", (16, 12), &[("voxel_dim", "128")]),
+        scene("cornell"),
+    );
+    let (mut session, _) = lab
+        .prepare(&experiment, scene, |_| Ok(vec!["voxelRadiance".into()]))
+        .unwrap();
     session.frame(0.0).unwrap();
     let texels = session.texels("voxelRadiance", 0, 0).unwrap();
-    let wrong = texels.floats().iter().filter(|t| t.iter().any(|v| !v.is_finite())).count();
+    let wrong = texels
+        .floats()
+        .iter()
+        .filter(|t| t.iter().any(|v| !v.is_finite()))
+        .count();
     assert_eq!(wrong, 0, "voxels whose radiance is not finite");
 }

@@ -1,7 +1,9 @@
 //! The metrics: values worked out by hand, what must hold for any picture, and NVIDIA's own FLIP evaluator.
 
 use conelab::metrics::{Compared, Kind, Linear, Scores, colour, scores};
-use exr::prelude::{Encoding, Image, Layer, LayerAttributes, SpecificChannels, Vec2, WritableImage};
+use exr::prelude::{
+    Encoding, Image, Layer, LayerAttributes, SpecificChannels, Vec2, WritableImage,
+};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -26,7 +28,15 @@ fn two_flat_pictures_score_what_the_definitions_say() {
     close(s.get("rmse"), 0.5);
     close(s.get("energy_ratio"), 1.5);
     close(s.get("smape"), 0.5 / 2.51);
-    assert_eq!((s.get("leak"), s.get("dark"), s.get("over_occlusion"), s.get("over_occluded")), (0.0, 0.0, 0.0, 0.0));
+    assert_eq!(
+        (
+            s.get("leak"),
+            s.get("dark"),
+            s.get("over_occlusion"),
+            s.get("over_occluded")
+        ),
+        (0.0, 0.0, 0.0, 0.0)
+    );
     assert_eq!((s.pixels, s.not_finite), (32, 0));
 }
 
@@ -45,7 +55,9 @@ fn channels_weigh_the_same() {
 fn light_behind_a_wall_is_leak_and_a_lit_wall_gone_black_is_over_occlusion() {
     // A quarter of the reference is dark; another quarter of the picture has lost its light.
     let r = picture((4, 1), |x, _| if x == 0 { [0.0; 3] } else { [1.0; 3] });
-    let x = picture((4, 1), |x, _| [[0.2; 3], [0.001; 3], [1.0; 3], [1.0; 3]][x as usize]);
+    let x = picture((4, 1), |x, _| {
+        [[0.2; 3], [0.001; 3], [1.0; 3], [1.0; 3]][x as usize]
+    });
     let s = scores(&x, &r).unwrap();
     close(s.get("leak"), 0.2);
     close(s.get("dark"), 0.25);
@@ -65,7 +77,10 @@ fn numbers_that_are_none_are_counted_and_spoil_nothing_but_flip() {
     let mut x = flat(1.5);
     x.rgb[9][1] = f32::NAN;
     x.rgb[20][0] = f32::INFINITY;
-    let (clean, s) = (scores(&flat(1.5), &flat(1.0)).unwrap(), scores(&x, &flat(1.0)).unwrap());
+    let (clean, s) = (
+        scores(&flat(1.5), &flat(1.0)).unwrap(),
+        scores(&x, &flat(1.0)).unwrap(),
+    );
     assert_eq!((s.pixels, s.not_finite), (32, 2));
     close(s.get("relmse"), clean.get("relmse"));
     close(s.get("energy_ratio"), clean.get("energy_ratio"));
@@ -91,7 +106,9 @@ fn a_black_reference_gives_no_ratio_and_json_says_so() {
     assert!(text.contains("\"energy_ratio\":null"), "{text}");
     let back: Scores = serde_json::from_str(&text).unwrap();
     assert!(
-        back.get("energy_ratio").is_nan() && back.get("structure").is_nan() && back.get("relmse") == s.get("relmse")
+        back.get("energy_ratio").is_nan()
+            && back.get("structure").is_nan()
+            && back.get("relmse") == s.get("relmse")
     );
 }
 
@@ -99,7 +116,10 @@ fn a_black_reference_gives_no_ratio_and_json_says_so() {
 fn pictures_that_do_not_fit_are_refused() {
     let other = picture((4, 8), |_, _| [1.0; 3]);
     let said = scores(&flat(1.0), &other).unwrap_err().to_string();
-    assert_eq!(said, "pictures of 8x4 and 4x8 cannot be compared; render both at one size");
+    assert_eq!(
+        said,
+        "pictures of 8x4 and 4x8 cannot be compared; render both at one size"
+    );
     let short = Linear::radiance((8, 4), vec![[1.0; 3]; 31]);
     assert!(scores(&short, &flat(1.0)).is_err());
     let none = Linear::radiance((0, 0), Vec::new());
@@ -133,7 +153,10 @@ fn noise(seed: u32, x: u32, y: u32, channel: u32) -> f32 {
 }
 
 fn hash(seed: u32, x: u32, y: u32, channel: u32) -> u8 {
-    let mut h = seed ^ x.wrapping_mul(0x9e37_79b1) ^ y.wrapping_mul(0x85eb_ca77) ^ channel.wrapping_mul(0xc2b2_ae3d);
+    let mut h = seed
+        ^ x.wrapping_mul(0x9e37_79b1)
+        ^ y.wrapping_mul(0x85eb_ca77)
+        ^ channel.wrapping_mul(0xc2b2_ae3d);
     for _ in 0..3 {
         h = (h ^ (h >> 15)).wrapping_mul(0x2c1b_3c6d);
     }
@@ -163,14 +186,30 @@ const DISPLAYED: [(&str, f64, Bytes, Bytes); 4] = [
 
 type Floats = fn(u32, u32) -> [f32; 3];
 const RADIANCE: [(&str, f64, Floats, Floats); 4] = [
-    ("darker-sky", 0.315285, sky, |x, y| sky(x, y).map(|v| v * 0.75)),
-    ("fireflies", 0.124355, room, |x, y| if hash(3, x, y, 0) > 250 { [40.0; 3] } else { room(x, y) }),
-    ("leaking-wall", 0.323474, room, |x, y| room(x, y).map(|v| v + if x < 32 { 0.03 } else { 0.0 })),
-    ("mostly-black", 0.947335, lamp, |x, y| lamp(x, y).map(|v| 1.5 * v + 0.001)),
+    ("darker-sky", 0.315285, sky, |x, y| {
+        sky(x, y).map(|v| v * 0.75)
+    }),
+    ("fireflies", 0.124355, room, |x, y| {
+        if hash(3, x, y, 0) > 250 {
+            [40.0; 3]
+        } else {
+            room(x, y)
+        }
+    }),
+    ("leaking-wall", 0.323474, room, |x, y| {
+        room(x, y).map(|v| v + if x < 32 { 0.03 } else { 0.0 })
+    }),
+    ("mostly-black", 0.947335, lamp, |x, y| {
+        lamp(x, y).map(|v| 1.5 * v + 0.001)
+    }),
 ];
 
 fn bars(x: u32) -> [u8; 3] {
-    if (x / 8).is_multiple_of(2) { [230, 200, 160] } else { [30, 40, 70] }
+    if (x / 8).is_multiple_of(2) {
+        [230, 200, 160]
+    } else {
+        [30, 40, 70]
+    }
 }
 
 fn ramp(x: u32, y: u32) -> [u8; 3] {
@@ -178,7 +217,11 @@ fn ramp(x: u32, y: u32) -> [u8; 3] {
 }
 
 fn points(x: u32, y: u32) -> [u8; 3] {
-    if x % 12 == 5 && y % 12 == 5 { [255, 240, 200] } else { [40, 60, 80] }
+    if x % 12 == 5 && y % 12 == 5 {
+        [255, 240, 200]
+    } else {
+        [40, 60, 80]
+    }
 }
 
 /// Brightness doubles every twelve pixels; the sun is a thousand times brighter.
@@ -193,32 +236,54 @@ fn sky(x: u32, y: u32) -> [f32; 3] {
 /// Three walls, one almost unlit, with some texture.
 fn room(x: u32, y: u32) -> [f32; 3] {
     let texture = 0.75 + noise(11, x / 4, y / 4, 0) / 4.0;
-    [[0.004, 0.003, 0.002], [0.5, 0.125, 0.0625], [2.0, 2.5, 3.0]][(x / 32) as usize].map(|v: f32| v * texture)
+    [[0.004, 0.003, 0.002], [0.5, 0.125, 0.0625], [2.0, 2.5, 3.0]][(x / 32) as usize]
+        .map(|v: f32| v * texture)
 }
 
 fn lamp(x: u32, y: u32) -> [f32; 3] {
-    if (40..56).contains(&x) && (24..40).contains(&y) { [12.0, 9.0, 5.0] } else { [0.0; 3] }
+    if (40..56).contains(&x) && (24..40).contains(&y) {
+        [12.0, 9.0, 5.0]
+    } else {
+        [0.0; 3]
+    }
 }
 
 fn decoded(rgb: Bytes) -> Linear {
-    let light = picture(SIZE, |x, y| rgb(x, y).map(|v| colour::srgb_to_linear(f32::from(v) / 255.0)));
-    Linear { kind: Kind::Displayed, ..light }
+    let light = picture(SIZE, |x, y| {
+        rgb(x, y).map(|v| colour::srgb_to_linear(f32::from(v) / 255.0))
+    });
+    Linear {
+        kind: Kind::Displayed,
+        ..light
+    }
 }
 
 #[test]
 fn flip_is_that_of_the_evaluator() {
     for (name, expected, reference, test) in DISPLAYED {
         let (x, r) = (decoded(test), decoded(reference));
-        let found = Compared::new(&x, &r).unwrap().scores(None).unwrap().get("flip");
-        assert!((found - expected).abs() < 1e-3, "{name}: {found}, the evaluator says {expected}");
+        let found = Compared::new(&x, &r)
+            .unwrap()
+            .scores(None)
+            .unwrap()
+            .get("flip");
+        assert!(
+            (found - expected).abs() < 1e-3,
+            "{name}: {found}, the evaluator says {expected}"
+        );
     }
 }
 
 #[test]
 fn hdr_flip_is_that_of_the_evaluator() {
     for (name, expected, reference, test) in RADIANCE {
-        let found = scores(&picture(SIZE, test), &picture(SIZE, reference)).unwrap().get("hdr_flip");
-        assert!((found - expected).abs() < 1e-3, "{name}: {found}, the evaluator says {expected}");
+        let found = scores(&picture(SIZE, test), &picture(SIZE, reference))
+            .unwrap()
+            .get("hdr_flip");
+        assert!(
+            (found - expected).abs() < 1e-3,
+            "{name}: {found}, the evaluator says {expected}"
+        );
     }
 }
 
@@ -230,17 +295,28 @@ fn write_the_pictures() {
     for (name, _, reference, test) in DISPLAYED {
         for (which, rgb) in [("reference", reference), ("test", test)] {
             let image = image::RgbImage::from_fn(SIZE.0, SIZE.1, |x, y| image::Rgb(rgb(x, y)));
-            image.save(folder.join(format!("{name}.{which}.png"))).unwrap();
+            image
+                .save(folder.join(format!("{name}.{which}.png")))
+                .unwrap();
         }
     }
     for (name, _, reference, test) in RADIANCE {
         for (which, rgb) in [("reference", reference), ("test", test)] {
-            let channels =
-                SpecificChannels::rgb(|at: Vec2<usize>| <(f32, f32, f32)>::from(rgb(at.0 as u32, at.1 as u32)));
+            let channels = SpecificChannels::rgb(|at: Vec2<usize>| {
+                <(f32, f32, f32)>::from(rgb(at.0 as u32, at.1 as u32))
+            });
             let size = (SIZE.0 as usize, SIZE.1 as usize);
             // The evaluator's reader crashes on tiles: rows, uncompressed.
-            let layer = Layer::new(size, LayerAttributes::default(), Encoding::UNCOMPRESSED, channels);
-            Image::from_layer(layer).write().to_file(folder.join(format!("{name}.{which}.exr"))).unwrap();
+            let layer = Layer::new(
+                size,
+                LayerAttributes::default(),
+                Encoding::UNCOMPRESSED,
+                channels,
+            );
+            Image::from_layer(layer)
+                .write()
+                .to_file(folder.join(format!("{name}.{which}.exr")))
+                .unwrap();
         }
     }
 }

@@ -3,7 +3,9 @@
 
 mod common;
 
-use common::{assert_clean, conelab, experiment, fails, floats, lab, mean, prepare, root, scene, succeeds};
+use common::{
+    assert_clean, conelab, experiment, fails, floats, lab, mean, prepare, root, scene, succeeds,
+};
 use conelab::experiment::Experiment;
 use conelab::graph::load::{Folders, load};
 use conelab::graph::param::Value;
@@ -31,33 +33,62 @@ struct Page {
 
 fn page() -> Page {
     let text = std::fs::read_to_string(root().join("docs/method.md")).unwrap();
-    let section =
-        text.split("\n## ").find(|s| s.starts_with("Adding an opacity model\n")).expect("the section is there");
+    let section = text
+        .split("\n## ")
+        .find(|s| s.starts_with("Adding an opacity model\n"))
+        .expect("the section is there");
     let quoted = |start: &str| {
-        let from = section.find(&format!("`{start}")).unwrap_or_else(|| panic!("`{start}...` stands in the section"));
+        let from = section
+            .find(&format!("`{start}"))
+            .unwrap_or_else(|| panic!("`{start}...` stands in the section"));
         PathBuf::from(section[from + 1..].split('`').next().unwrap())
     };
     let block = |language: &str| {
         let fence = format!("\n```{language}\n");
-        assert_eq!(section.matches(&fence).count(), 1, "one block of {language}");
-        section.split(&fence).nth(1).unwrap().split("```").next().unwrap().to_string()
+        assert_eq!(
+            section.matches(&fence).count(),
+            1,
+            "one block of {language}"
+        );
+        section
+            .split(&fence)
+            .nth(1)
+            .unwrap()
+            .split("```")
+            .next()
+            .unwrap()
+            .to_string()
     };
     let shader = quoted("shaders/modules/opacity/");
     let option = shader.file_stem().unwrap().to_string_lossy().into_owned();
-    Page { glsl: block("glsl"), line: block("ron"), graph: quoted("passes/"), shader, option }
+    Page {
+        glsl: block("glsl"),
+        line: block("ron"),
+        graph: quoted("passes/"),
+        shader,
+        option,
+    }
 }
 
 /// A copy of the method with the page's model in it: one file, one line.
 fn home_with_model(page: &Page) -> TempDir {
     let home = common::home();
-    assert!(!home.path().join(&page.shader).exists(), "{} is a new file", page.shader.display());
+    assert!(
+        !home.path().join(&page.shader).exists(),
+        "{} is a new file",
+        page.shader.display()
+    );
     std::fs::write(home.path().join(&page.shader), &page.glsl).unwrap();
     assert_eq!(page.line.lines().count(), 1, "one line");
     edit(home.path(), &page.graph, |text| {
         let module = text.find("Module(name: \"opacity\"").unwrap();
         let options = module + text[module..].find("options: {\n").unwrap() + "options: {\n".len();
         let end = options
-            + text[options..].lines().take_while(|l| !l.trim().starts_with('}')).map(|l| l.len() + 1).sum::<usize>();
+            + text[options..]
+                .lines()
+                .take_while(|l| !l.trim().starts_with('}'))
+                .map(|l| l.len() + 1)
+                .sum::<usize>();
         format!("{}{}{}", &text[..end], page.line, &text[end..])
     });
     home
@@ -92,7 +123,14 @@ fn small(opacity: &str) -> Experiment {
 /// The same on the command line, of the folders of `home`.
 fn command(home: &Path, name: &str) -> Command {
     let mut command = conelab(home);
-    command.args([name, "configs/cones.ron", "--scene", "cornell", "--size", "48x36"]);
+    command.args([
+        name,
+        "configs/cones.ron",
+        "--scene",
+        "cornell",
+        "--size",
+        "48x36",
+    ]);
     command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256"]);
     command.args(["--set", "diffuse_aperture=40", "--set", "lod_offset=0"]);
     command
@@ -117,13 +155,29 @@ fn render(gpu: &Lab, folder: &Path, opacity: &str) -> ([Vec<u8>; 3], f64) {
 
 /// The same device on other folders.
 fn at(lab: &Lab, folder: &Path) -> Lab {
-    Lab { home: Workspace { root: folder.to_path_buf(), cache: lab.home.cache.clone() }, gpu: lab.gpu.clone() }
+    Lab {
+        home: Workspace {
+            root: folder.to_path_buf(),
+            cache: lab.home.cache.clone(),
+        },
+        gpu: lab.gpu.clone(),
+    }
 }
 
 /// All files of a folder.
 fn files(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
-    entries.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
+    let entries = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().path());
+    entries
+        .flat_map(|path| {
+            if path.is_dir() {
+                files(&path)
+            } else {
+                vec![path]
+            }
+        })
+        .collect()
 }
 
 #[test]
@@ -132,20 +186,40 @@ fn the_page_names_files_and_settings_that_are_there() {
     let home = home_with_model(&page);
     let text = std::fs::read_to_string(root().join("docs/method.md")).unwrap();
     let prose: String = text.split("\n```").step_by(2).collect();
-    let files = [files(&home.path().join("shaders")), files(&home.path().join("passes"))].concat();
-    let folders = Workspace { root: home.path().to_path_buf(), cache: None }.folders();
+    let files = [
+        files(&home.path().join("shaders")),
+        files(&home.path().join("passes")),
+    ]
+    .concat();
+    let folders = Workspace {
+        root: home.path().to_path_buf(),
+        cache: None,
+    }
+    .folders();
     let graph = |name: &str| load(&folders.passes.join(name), &folders).unwrap().params;
-    let graphs = ["rays.ron", "cones.ron", "thesis.ron", "warps.ron", "temporal.ron"].map(graph);
+    let graphs = [
+        "rays.ron",
+        "cones.ron",
+        "thesis.ron",
+        "warps.ron",
+        "temporal.ron",
+    ]
+    .map(graph);
     let (mut found, mut missing) = (0, Vec::new());
-    for word in prose.split('`').skip(1).step_by(2).filter(|w| !w.contains([' ', '(', '*', '>'])) {
+    for word in prose
+        .split('`')
+        .skip(1)
+        .step_by(2)
+        .filter(|w| !w.contains([' ', '(', '*', '>']))
+    {
         let there = match (word.split_once('='), Path::new(word).extension()) {
             (Some((name, value)), _) => graphs.iter().any(|g| g.clone().set(name, value).is_ok()),
             // Made by the program.
             _ if word == "modules/opacity.glsl" => true,
             (_, Some(e)) if e != "rs" => files.iter().any(|f| f.ends_with(word)),
-            _ if word.ends_with('/') => {
-                [".", "shaders", "passes"].iter().any(|f| home.path().join(f).join(word).is_dir())
-            }
+            _ if word.ends_with('/') => [".", "shaders", "passes"]
+                .iter()
+                .any(|f| home.path().join(f).join(word).is_dir()),
             _ => continue,
         };
         found += 1;
@@ -163,7 +237,11 @@ fn a_model_is_one_file_and_one_line() {
     let home = home_with_model(&page);
     // The page promises the graphs that include the file too.
     for graph in ["rays.ron", "warps.ron", "temporal.ron"] {
-        let said = succeeds(conelab(home.path()).arg("check").arg(Path::new("passes").join(graph)));
+        let said = succeeds(
+            conelab(home.path())
+                .arg("check")
+                .arg(Path::new("passes").join(graph)),
+        );
         assert_eq!(said, "checked 1 files, 0 errors\n", "{graph}");
     }
 
@@ -172,13 +250,22 @@ fn a_model_is_one_file_and_one_line() {
     let (coverage, coverage_open) = render(&gpu, home.path(), "coverage");
     let (layers, _) = render(&gpu, home.path(), "layers");
     let (before, _) = render(&gpu, root(), "coverage");
-    assert!(before == coverage, "a model that is not chosen changes nothing");
+    assert!(
+        before == coverage,
+        "a model that is not chosen changes nothing"
+    );
     for (i, name) in WANTED.iter().enumerate() {
-        assert!(made[i] != coverage[i] && made[i] != layers[i], "{name} is of the new model");
+        assert!(
+            made[i] != coverage[i] && made[i] != layers[i],
+            "{name} is of the new model"
+        );
     }
     // Surfaces that hide one another hide less of a cone.
     println!("openness: {open:.4}, by coverage {coverage_open:.4}");
-    assert!(open > coverage_open + 0.005, "{open} against {coverage_open}");
+    assert!(
+        open > coverage_open + 0.005,
+        "{open} against {coverage_open}"
+    );
 }
 
 #[test]
@@ -186,18 +273,33 @@ fn a_mistake_in_a_model_is_told_and_keeps_nobody_from_rendering_with_another() {
     let page = page();
     let home = home_with_model(&page);
     let gpu = lab(home.path());
-    for file in [&page.shader, Path::new("shaders/modules/opacity/layers.glsl")] {
+    for file in [
+        &page.shader,
+        Path::new("shaders/modules/opacity/layers.glsl"),
+    ] {
         let text = std::fs::read_to_string(home.path().join(file)).unwrap();
         std::fs::write(home.path().join(file), format!("{text}float broken = ;\n")).unwrap();
-        let place = format!("{}:{}: error", home.path().join(file).display(), text.lines().count() + 1);
+        let place = format!(
+            "{}:{}: error",
+            home.path().join(file).display(),
+            text.lines().count() + 1
+        );
 
-        let output = conelab(home.path()).args(["check", "passes/cones.ron"]).output().unwrap();
+        let output = conelab(home.path())
+            .args(["check", "passes/cones.ron"])
+            .output()
+            .unwrap();
         let said = String::from_utf8_lossy(&output.stdout);
         assert_eq!(output.status.code(), Some(1), "{said}");
         assert_eq!(said.matches(&place).count(), 1, "{place}\n{said}");
         assert!(said.ends_with("checked 1 files, 1 errors\n"), "{said}");
         let option = file.file_stem().unwrap().to_string_lossy();
-        let said = fails(command(home.path(), "render").args(["--set", &format!("opacity={option}"), "-o", "a.png"]));
+        let said = fails(command(home.path(), "render").args([
+            "--set",
+            &format!("opacity={option}"),
+            "-o",
+            "a.png",
+        ]));
         assert!(said.contains(&place), "{place}\n{said}");
 
         assert!(render(&gpu, home.path(), "coverage").0 == render(&gpu, root(), "coverage").0);
@@ -205,10 +307,17 @@ fn a_mistake_in_a_model_is_told_and_keeps_nobody_from_rendering_with_another() {
     }
     // A line for a file that is not there.
     std::fs::remove_file(home.path().join(&page.shader)).unwrap();
-    let output = conelab(home.path()).args(["check", "passes/cones.ron"]).output().unwrap();
+    let output = conelab(home.path())
+        .args(["check", "passes/cones.ron"])
+        .output()
+        .unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(1), "{said}");
-    let file = page.shader.strip_prefix("shaders").unwrap().to_string_lossy();
+    let file = page
+        .shader
+        .strip_prefix("shaders")
+        .unwrap()
+        .to_string_lossy();
     assert!(said.contains(&*file), "{said}");
     assert!(render(&gpu, home.path(), "coverage").0 == render(&gpu, root(), "coverage").0);
 }
@@ -221,10 +330,20 @@ fn a_live_session_builds_only_what_includes_the_model() {
     let cornell = scene("cornell");
     let build = |option: &str, old: Option<&Session>| {
         let experiment = small(option);
-        let loaded = lab.home.load_for(&experiment, &cornell, &lab.gpu.info).unwrap();
+        let loaded = lab
+            .home
+            .load_for(&experiment, &cornell, &lab.gpu.info)
+            .unwrap();
         let wanted = WANTED.map(String::from).to_vec();
         let reuse = old.map(Session::reusable_parts);
-        lab.build(&experiment, &loaded, cornell.clone(), wanted, reuse.as_ref()).unwrap()
+        lab.build(
+            &experiment,
+            &loaded,
+            cornell.clone(),
+            wanted,
+            reuse.as_ref(),
+        )
+        .unwrap()
     };
     let replace = |old: &mut Session, option: &str| {
         let mut next = build(option, Some(old));
@@ -237,7 +356,11 @@ fn a_live_session_builds_only_what_includes_the_model() {
     let coverage = pictures(&mut session);
 
     // Another option: shading alone includes it.
-    let one = Change { kept: first.built - 1, built: 1, resized: 0 };
+    let one = Change {
+        kept: first.built - 1,
+        built: 1,
+        resized: 0,
+    };
     session = replace(&mut session, &page.option);
     assert_eq!(session.program.change, one);
     let made = pictures(&mut session);
@@ -253,9 +376,20 @@ fn a_live_session_builds_only_what_includes_the_model() {
     assert!(pictures(&mut session) != made);
 
     // An edit of a file that is not chosen.
-    edit(home.path(), Path::new("shaders/modules/opacity/layers.glsl"), |text| text + "// another\n");
+    edit(
+        home.path(),
+        Path::new("shaders/modules/opacity/layers.glsl"),
+        |text| text + "// another\n",
+    );
     session = replace(&mut session, &page.option);
-    assert_eq!(session.program.change, Change { kept: first.built, built: 0, resized: 0 });
+    assert_eq!(
+        session.program.change,
+        Change {
+            kept: first.built,
+            built: 0,
+            resized: 0
+        }
+    );
 
     // And back.
     session = replace(&mut session, "coverage");
@@ -266,18 +400,42 @@ fn a_live_session_builds_only_what_includes_the_model() {
 
 #[test]
 fn what_is_no_more_says_what_to_write_instead() {
-    let folders = Workspace { root: root().to_path_buf(), cache: None }.folders();
-    let graph = load(&folders.passes.join("rays.ron"), &folders).unwrap();
-    let instead = |name: &str| graph.params.retired.iter().find(|r| r.0 == name).unwrap().1.clone();
-    let out = tempfile::tempdir().unwrap();
-    for (setting, retired, word) in
-        [("directional=false", "directional", "mips"), ("opacity=stored", "opacity=stored", "thesis.ron")]
-    {
-        let said = fails(command(root(), "render").args(["--set", setting, "-o"]).arg(out.path().join("a.png")));
-        let text = instead(retired);
-        assert!(text.contains(word) && said.contains(&text), "{setting}: {said}");
+    let folders = Workspace {
+        root: root().to_path_buf(),
+        cache: None,
     }
-    assert!(std::fs::read_dir(out.path()).unwrap().next().is_none(), "nothing was rendered");
+    .folders();
+    let graph = load(&folders.passes.join("rays.ron"), &folders).unwrap();
+    let instead = |name: &str| {
+        graph
+            .params
+            .retired
+            .iter()
+            .find(|r| r.0 == name)
+            .unwrap()
+            .1
+            .clone()
+    };
+    let out = tempfile::tempdir().unwrap();
+    for (setting, retired, word) in [
+        ("directional=false", "directional", "mips"),
+        ("opacity=stored", "opacity=stored", "thesis.ron"),
+    ] {
+        let said = fails(
+            command(root(), "render")
+                .args(["--set", setting, "-o"])
+                .arg(out.path().join("a.png")),
+        );
+        let text = instead(retired);
+        assert!(
+            text.contains(word) && said.contains(&text),
+            "{setting}: {said}"
+        );
+    }
+    assert!(
+        std::fs::read_dir(out.path()).unwrap().next().is_none(),
+        "nothing was rendered"
+    );
 }
 
 #[test]
@@ -287,9 +445,14 @@ fn a_capture_replays_and_can_be_varied() {
     succeeds(command(home.path(), "capture").args(["--name", "kept"]));
     let kept = home.path().join("captures/kept");
     let files = std::fs::read_dir(kept.join("graph/shaders/modules/opacity")).unwrap();
-    let files: BTreeSet<String> = files.map(|f| f.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    let files: BTreeSet<String> = files
+        .map(|f| f.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
     let own = format!("{}.glsl", page.option);
-    assert_eq!(files, BTreeSet::from(["cell.glsl", "coverage.glsl", "layers.glsl", &own].map(String::from)));
+    assert_eq!(
+        files,
+        BTreeSet::from(["cell.glsl", "coverage.glsl", "layers.glsl", &own].map(String::from))
+    );
 
     // What the project holds does not matter any more.
     std::fs::remove_dir_all(home.path().join("shaders/modules")).unwrap();
@@ -299,13 +462,22 @@ fn a_capture_replays_and_can_be_varied() {
     // Another option, by the capture's own files, is what the method makes with it.
     let (graph, picture) = (kept.join("graph"), home.path().join("varied.exr"));
     let mut varied = conelab(&graph);
-    varied.arg("render").arg(kept.join("experiment.ron")).args(["--set", &format!("opacity={}", page.option), "-o"]);
+    varied.arg("render").arg(kept.join("experiment.ron")).args([
+        "--set",
+        &format!("opacity={}", page.option),
+        "-o",
+    ]);
     succeeds(varied.arg(&picture));
-    let [varied, coverage] = [&picture, &kept.join("picture.exr")].map(|p| std::fs::read(p).unwrap());
+    let [varied, coverage] =
+        [&picture, &kept.join("picture.exr")].map(|p| std::fs::read(p).unwrap());
     assert!(varied != coverage);
     let fresh = home_with_model(&page);
     let again = fresh.path().join("again.exr");
-    succeeds(command(fresh.path(), "render").args(["--set", &format!("opacity={}", page.option), "-o"]).arg(&again));
+    succeeds(
+        command(fresh.path(), "render")
+            .args(["--set", &format!("opacity={}", page.option), "-o"])
+            .arg(&again),
+    );
     assert!(varied == std::fs::read(again).unwrap());
 }
 
@@ -334,8 +506,14 @@ impl Bench {
     fn new(text: &str) -> Bench {
         let bench = Bench(tempfile::tempdir().unwrap());
         bench.write("passes/base.ron", BASE);
-        bench.write("passes/graph.ron", &format!("(\n    include: [\"base.ron\"],\n{text}\n)"));
-        bench.write("shaders/modules/plain.glsl", "float plain() { return 1.0; }\n");
+        bench.write(
+            "passes/graph.ron",
+            &format!("(\n    include: [\"base.ron\"],\n{text}\n)"),
+        );
+        bench.write(
+            "shaders/modules/plain.glsl",
+            "float plain() { return 1.0; }\n",
+        );
         bench
     }
 
@@ -346,9 +524,16 @@ impl Bench {
     }
 
     fn load(&self) -> Result<Graph, String> {
-        let folders = Folders { passes: self.0.path().join("passes"), shaders: self.0.path().join("shaders") };
+        let folders = Folders {
+            passes: self.0.path().join("passes"),
+            shaders: self.0.path().join("shaders"),
+        };
         load(&folders.passes.join("graph.ron"), &folders).map_err(|errors| {
-            let text = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+            let text = errors
+                .iter()
+                .map(ToString::to_string)
+                .collect::<Vec<_>>()
+                .join("\n");
             text.replace(&format!("{}/", self.0.path().display()), "")
         })
     }
@@ -356,7 +541,9 @@ impl Bench {
 
 #[track_caller]
 fn graph(text: &str) -> Graph {
-    Bench::new(text).load().unwrap_or_else(|errors| panic!("{errors}"))
+    Bench::new(text)
+        .load()
+        .unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 #[track_caller]
@@ -366,7 +553,10 @@ fn mistakes(text: &str) -> String {
 
 #[test]
 fn defaults_are_of_parameters_that_are_there() {
-    assert_eq!(graph("    defaults: { \"size\": 16 },").params.get("size"), Some(&Value::Int(16)));
+    assert_eq!(
+        graph("    defaults: { \"size\": 16 },").params.get("size"),
+        Some(&Value::Int(16))
+    );
     assert_snapshot!(mistakes("    defaults: { \"sise\": 16 },"), @r#"
     passes/graph.ron:3:17: error: no parameter 'sise' to give a default to
         |     defaults: { "sise": 16 },
@@ -392,10 +582,27 @@ fn a_fixed_parameter_keeps_its_default() {
     assert_eq!(value(&fixed, "area", &[]), Value::Int(1024));
     let mut params = fixed.params.clone();
     params.set("size", "16").unwrap();
-    assert_eq!(params.set("size", "8").unwrap_err(), "'size' is fixed at 16 in this graph");
+    assert_eq!(
+        params.set("size", "8").unwrap_err(),
+        "'size' is fixed at 16 in this graph"
+    );
     assert!(params.offered().all(|p| p.name != "size"));
-    assert_eq!(fixed.views.iter().map(|v| v.value.title.as_str()).collect::<Vec<_>>(), ["bright"]);
-    assert_eq!(fixed.fit.iter().map(|axis| axis.0.as_str()).collect::<Vec<_>>(), ["grid"]);
+    assert_eq!(
+        fixed
+            .views
+            .iter()
+            .map(|v| v.value.title.as_str())
+            .collect::<Vec<_>>(),
+        ["bright"]
+    );
+    assert_eq!(
+        fixed
+            .fit
+            .iter()
+            .map(|axis| axis.0.as_str())
+            .collect::<Vec<_>>(),
+        ["grid"]
+    );
     assert_snapshot!(mistakes("    fixed: [\"sise\"],"), @r#"
     passes/graph.ron:3:13: error: no parameter 'sise' to fix
         |     fixed: ["sise"],
@@ -405,8 +612,17 @@ fn a_fixed_parameter_keeps_its_default() {
 
 #[test]
 fn the_shipped_graphs_offer_at_most_45_parameters() {
-    let workspace = Workspace { root: common::root().to_path_buf(), cache: None };
-    for name in ["cones.ron", "rays.ron", "thesis.ron", "warps.ron", "temporal.ron"] {
+    let workspace = Workspace {
+        root: common::root().to_path_buf(),
+        cache: None,
+    };
+    for name in [
+        "cones.ron",
+        "rays.ron",
+        "thesis.ron",
+        "warps.ron",
+        "temporal.ron",
+    ] {
         let count = workspace.load(name).unwrap().graph.params.offered().count();
         assert!(count <= 45, "{name} has {count}");
     }
@@ -418,7 +634,10 @@ fn a_module_is_fixed_or_chosen() {
         Module(name: "kernel", help: "Which.", options: { "plain": "modules/plain.glsl" }),
     ],"#;
     const FIXED: &str = r#"    modules: { "kernel": "modules/plain.glsl" },"#;
-    assert_eq!(graph(FIXED).modules, [("kernel".to_string(), "modules/plain.glsl".to_string())]);
+    assert_eq!(
+        graph(FIXED).modules,
+        [("kernel".to_string(), "modules/plain.glsl".to_string())]
+    );
     assert_snapshot!(mistakes(&format!("{CHOSEN}\n{FIXED}")), @r#"
     passes/graph.ron:6:16: error: module 'kernel' is a parameter, which an option is chosen for: remove one
         |     modules: { "kernel": "modules/plain.glsl" },
@@ -431,15 +650,27 @@ fn a_module_is_fixed_or_chosen() {
 
     // What an included file has fixed, an including one may offer.
     let bench = Bench::new(CHOSEN);
-    bench.write("passes/base.ron", &BASE.replace("    values: {", &format!("{FIXED}\n    values: {{")));
+    bench.write(
+        "passes/base.ron",
+        &BASE.replace("    values: {", &format!("{FIXED}\n    values: {{")),
+    );
     let graph = bench.load().unwrap();
-    assert!(graph.modules.is_empty() && graph.params.get("kernel") == Some(&Value::Choice("plain".into())));
+    assert!(
+        graph.modules.is_empty()
+            && graph.params.get("kernel") == Some(&Value::Choice("plain".into()))
+    );
 }
 
 #[test]
 fn a_pass_stands_behind_one_that_is_there() {
-    let pass = |after: &str| format!("    passes: [(name: \"between\", after: \"{after}\", clear: \"picture\")],");
-    let names: Vec<String> = graph(&pass("fill")).passes.iter().map(|p| p.value.name.value.clone()).collect();
+    let pass = |after: &str| {
+        format!("    passes: [(name: \"between\", after: \"{after}\", clear: \"picture\")],")
+    };
+    let names: Vec<String> = graph(&pass("fill"))
+        .passes
+        .iter()
+        .map(|p| p.value.name.value.clone())
+        .collect();
     assert_eq!(names, ["fill", "between", "finish"]);
     assert_snapshot!(mistakes(&pass("fil")), @r#"
     passes/graph.ron:3:39: error: no pass 'fil' stands before this one
@@ -454,7 +685,11 @@ fn value(graph: &Graph, name: &str, settings: &[(&str, &str)]) -> Value {
     for (name, value) in settings {
         params.set(name, value).unwrap();
     }
-    let set = Evaluated::new(graph, &params, environment(&scene("triangles"), (64, 48), &any_device()));
+    let set = Evaluated::new(
+        graph,
+        &params,
+        environment(&scene("triangles"), (64, 48), &any_device()),
+    );
     let index = graph.values.iter().position(|v| v.name == name).unwrap();
     set.values[index].clone()
 }
@@ -464,7 +699,10 @@ fn a_value_of_an_including_file_replaces_the_included_one() {
     assert_eq!(value(&graph(""), "area", &[]), Value::Int(256));
     // What reads it, there too, reads the new one.
     let replaced = graph("    values: { \"edge\": Int(\"3 * size\") },");
-    assert_eq!([value(&replaced, "edge", &[]), value(&replaced, "area", &[])], [Value::Int(24), Value::Int(576)]);
+    assert_eq!(
+        [value(&replaced, "edge", &[]), value(&replaced, "area", &[])],
+        [Value::Int(24), Value::Int(576)]
+    );
     // Twice in one file is a mistake still.
     assert_snapshot!(mistakes("    values: { \"edge\": Int(1), \"edge\": Int(2) },"), @r#"
     passes/graph.ron:3:31: error: 'edge' stands twice
@@ -475,11 +713,21 @@ fn a_value_of_an_including_file_replaces_the_included_one() {
 /// The signature of the voxels of a shipped graph with these settings, and with files of its shaders edited first.
 fn voxel_signature(home: &Workspace, graph: &Graph, settings: &[(&str, &str)]) -> Value {
     let mut params = graph.params.clone();
-    settings.iter().for_each(|(name, value)| params.set(name, value).unwrap());
-    let set = Evaluated::new(graph, &params, environment(&scene("cornell"), (64, 48), &any_device()));
+    settings
+        .iter()
+        .for_each(|(name, value)| params.set(name, value).unwrap());
+    let set = Evaluated::new(
+        graph,
+        &params,
+        environment(&scene("cornell"), (64, 48), &any_device()),
+    );
     let linked = home.linked(graph, &params).unwrap();
     let plan = plan(&set, &linked, &["display".into()], &any_device()).unwrap();
-    let index = graph.values.iter().position(|v| v.name == "voxel_signature").unwrap();
+    let index = graph
+        .values
+        .iter()
+        .position(|v| v.name == "voxel_signature")
+        .unwrap();
     signed(&set, &linked, &plan)[index].clone()
 }
 
@@ -488,12 +736,25 @@ fn voxel_signature(home: &Workspace, graph: &Graph, settings: &[(&str, &str)]) -
 #[test]
 fn a_signature_differs_where_its_stage_reads_other_settings() {
     let home = common::home();
-    let workspace = Workspace { root: home.path().to_path_buf(), cache: Some(common::cache()) };
+    let workspace = Workspace {
+        root: home.path().to_path_buf(),
+        cache: Some(common::cache()),
+    };
     let graph = workspace.load("warps.ron").unwrap().graph;
-    let base = [("volume_scroll", "true"), ("warp", "spline"), ("voxelizer", "raster"), ("conservative", "msaa")];
-    let with = |settings: &[(&str, &str)]| voxel_signature(&workspace, &graph, &[&base[..], settings].concat());
+    let base = [
+        ("volume_scroll", "true"),
+        ("warp", "spline"),
+        ("voxelizer", "raster"),
+        ("conservative", "msaa"),
+    ];
+    let with = |settings: &[(&str, &str)]| {
+        voxel_signature(&workspace, &graph, &[&base[..], settings].concat())
+    };
     let signature = with(&[]);
-    assert!(matches!(signature, Value::Int(1..=0x7fff_ffff)), "{signature:?}");
+    assert!(
+        matches!(signature, Value::Int(1..=0x7fff_ffff)),
+        "{signature:?}"
+    );
     assert_eq!(with(&[]), signature);
     let mut found = BTreeSet::from([signature.to_string()]);
     for (name, value) in [
@@ -525,9 +786,11 @@ fn a_signature_differs_where_its_stage_reads_other_settings() {
         assert_eq!(with(&[(name, value)]), signature, "{name}={value}");
     }
     // An edit of a shader is another setting.
-    edit(home.path(), Path::new("shaders/voxels/merge.comp"), |text| {
-        text.replacen("void main() {", "void main() {\n    memoryBarrier();", 1)
-    });
+    edit(
+        home.path(),
+        Path::new("shaders/voxels/merge.comp"),
+        |text| text.replacen("void main() {", "void main() {\n    memoryBarrier();", 1),
+    );
     assert_ne!(with(&[]), signature);
 }
 

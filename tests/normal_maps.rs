@@ -27,13 +27,23 @@ const LAYINGS: [(Vec2, Vec2); 8] = [
 ];
 
 /// How nodes are mirrored.
-const MIRRORS: [Vec3; 4] = [Vec3::ONE, Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0), Vec3::new(1.0, 1.0, -1.0)];
+const MIRRORS: [Vec3; 4] = [
+    Vec3::ONE,
+    Vec3::new(-1.0, 1.0, 1.0),
+    Vec3::new(1.0, -1.0, 1.0),
+    Vec3::new(1.0, 1.0, -1.0),
+];
 
 /// Metres from case to case; a square has one.
 const PITCH: f32 = 1.25;
 
 /// Corners of a square around the origin.
-const CORNERS: [Vec2; 4] = [Vec2::new(-0.5, -0.5), Vec2::new(0.5, -0.5), Vec2::new(0.5, 0.5), Vec2::new(-0.5, 0.5)];
+const CORNERS: [Vec2; 4] = [
+    Vec2::new(-0.5, -0.5),
+    Vec2::new(0.5, -0.5),
+    Vec2::new(0.5, 0.5),
+    Vec2::new(-0.5, 0.5),
+];
 
 /// The texture coordinate of a point under a laying; v grows down the picture.
 fn uv(at: Vec2, (right, down): (Vec2, Vec2)) -> Vec2 {
@@ -49,12 +59,18 @@ fn texel((right, down): (Vec2, Vec2)) -> [u8; 3] {
 
 fn png(texel: [u8; 3]) -> Vec<u8> {
     let mut png = std::io::Cursor::new(Vec::new());
-    image::RgbImage::from_raw(1, 1, texel.to_vec()).unwrap().write_to(&mut png, image::ImageFormat::Png).unwrap();
+    image::RgbImage::from_raw(1, 1, texel.to_vec())
+        .unwrap()
+        .write_to(&mut png, image::ImageFormat::Png)
+        .unwrap();
     png.into_inner()
 }
 
 fn data_uri(bytes: &[u8]) -> String {
-    format!("data:application/octet-stream;base64,{}", base64::engine::general_purpose::STANDARD.encode(bytes))
+    format!(
+        "data:application/octet-stream;base64,{}",
+        base64::engine::general_purpose::STANDARD.encode(bytes)
+    )
 }
 
 /// A glTF file that grows.
@@ -67,7 +83,10 @@ impl File {
     fn new() -> File {
         let root = json!({ "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [] }], "nodes": [], "meshes": [],
             "materials": [], "accessors": [], "bufferViews": [], "images": [], "textures": [] });
-        File { root, bytes: Vec::new() }
+        File {
+            root,
+            bytes: Vec::new(),
+        }
     }
 
     fn push(&mut self, list: &str, value: Value) -> usize {
@@ -77,12 +96,19 @@ impl File {
     }
 
     fn accessor<const N: usize>(&mut self, values: &[[f32; N]]) -> usize {
-        let bytes: Vec<u8> = values.iter().flatten().flat_map(|f| f.to_le_bytes()).collect();
-        let view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
+        let bytes: Vec<u8> = values
+            .iter()
+            .flatten()
+            .flat_map(|f| f.to_le_bytes())
+            .collect();
+        let view =
+            json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
         self.bytes.extend(bytes);
         let view = self.push("bufferViews", view);
         let of = |choose: fn(f32, f32) -> f32| -> Vec<f32> {
-            (0..N).map(|i| values.iter().map(|v| v[i]).reduce(choose).unwrap()).collect()
+            (0..N)
+                .map(|i| values.iter().map(|v| v[i]).reduce(choose).unwrap())
+                .collect()
         };
         let (low, high) = (of(f32::min), of(f32::max));
         self.push(
@@ -111,24 +137,38 @@ impl File {
         tangent: Option<[f32; 4]>,
         material: usize,
     ) -> usize {
-        let corners: Vec<[f32; 3]> = quads.iter().flat_map(|q| [0, 1, 2, 0, 2, 3].map(|i| q[i].to_array())).collect();
+        let corners: Vec<[f32; 3]> = quads
+            .iter()
+            .flat_map(|q| [0, 1, 2, 0, 2, 3].map(|i| q[i].to_array()))
+            .collect();
         let mut attributes = json!({ "POSITION": self.accessor(&corners), "NORMAL": self.accessor(&vec![normal.to_array(); corners.len()]) });
         if let Some(uvs) = uvs {
-            attributes["TEXCOORD_0"] = json!(self.accessor(&[0, 1, 2, 0, 2, 3].map(|i| uvs[i].to_array())));
+            attributes["TEXCOORD_0"] =
+                json!(self.accessor(&[0, 1, 2, 0, 2, 3].map(|i| uvs[i].to_array())));
         }
         if let Some(tangent) = tangent {
             attributes["TANGENT"] = json!(self.accessor(&[tangent; 6]));
         }
-        self.push("meshes", json!({ "primitives": [{ "attributes": attributes, "material": material }] }))
+        self.push(
+            "meshes",
+            json!({ "primitives": [{ "attributes": attributes, "material": material }] }),
+        )
     }
 
     fn place(&mut self, mesh: usize, at: Vec3, scale: Vec3) {
-        let node = self.push("nodes", json!({ "mesh": mesh, "translation": at.to_array(), "scale": scale.to_array() }));
-        self.root["scenes"][0]["nodes"].as_array_mut().unwrap().push(json!(node));
+        let node = self.push(
+            "nodes",
+            json!({ "mesh": mesh, "translation": at.to_array(), "scale": scale.to_array() }),
+        );
+        self.root["scenes"][0]["nodes"]
+            .as_array_mut()
+            .unwrap()
+            .push(json!(node));
     }
 
     fn write(mut self, path: &Path) {
-        self.root["buffers"] = json!([{ "byteLength": self.bytes.len(), "uri": data_uri(&self.bytes) }]);
+        self.root["buffers"] =
+            json!([{ "byteLength": self.bytes.len(), "uri": data_uri(&self.bytes) }]);
         std::fs::write(path, self.root.to_string()).unwrap();
     }
 }
@@ -137,7 +177,13 @@ impl File {
 fn slats() -> Vec<[Vec3; 4]> {
     let slat = |i: i32| {
         let low = -0.5 + i as f32 / 8.0;
-        [(-0.5, low, 0.125), (0.5, low, 0.125), (0.5, low + 0.125, 0.0), (-0.5, low + 0.125, 0.0)].map(Vec3::from)
+        [
+            (-0.5, low, 0.125),
+            (0.5, low, 0.125),
+            (0.5, low + 0.125, 0.0),
+            (-0.5, low + 0.125, 0.0),
+        ]
+        .map(Vec3::from)
     };
     (0..8).map(slat).collect()
 }
@@ -150,7 +196,10 @@ fn flat() -> [Vec3; 4] {
 /// `cross(normal, tangent) * w` its top.
 fn tangent((right, down): (Vec2, Vec2)) -> [f32; 4] {
     let bitangent = Vec3::Z.cross(right.extend(0.0));
-    right.extend(0.0).extend(bitangent.dot(-down.extend(0.0)).signum()).to_array()
+    right
+        .extend(0.0)
+        .extend(bitangent.dot(-down.extend(0.0)).signum())
+        .to_array()
 }
 
 /// What stands at a column and a row: rows are mirrors; columns are the slats, and then the layings, without tangents and
@@ -165,13 +214,25 @@ fn place_of(column: usize, row: usize) -> Vec3 {
 fn gltf_cases(path: &Path) {
     let mut file = File::new();
     let plain = file.material(None, 1.0);
-    let real = file.mesh(&slats(), Vec3::new(0.0, 1.0, 1.0).normalize(), None, None, plain);
+    let real = file.mesh(
+        &slats(),
+        Vec3::new(0.0, 1.0, 1.0).normalize(),
+        None,
+        None,
+        plain,
+    );
     let mut meshes = vec![real];
     for given in [false, true] {
         for laying in LAYINGS {
             let material = file.material(Some(texel(laying)), 1.0);
             let uvs = CORNERS.map(|c| uv(c, laying));
-            meshes.push(file.mesh(&[flat()], Vec3::Z, Some(uvs), given.then(|| tangent(laying)), material));
+            meshes.push(file.mesh(
+                &[flat()],
+                Vec3::Z,
+                Some(uvs),
+                given.then(|| tangent(laying)),
+                material,
+            ));
         }
     }
     for (row, mirror) in MIRRORS.iter().enumerate() {
@@ -205,7 +266,11 @@ fn sun(direction: Vec3) -> Light {
 
 /// From far away, so that all cases of a column are seen at nearly one angle.
 fn viewed(columns: usize, rows: usize, settings: &[(&str, &str)]) -> Experiment {
-    let mut e = experiment("cornell", (CELL * columns as u32, CELL * rows as u32), settings);
+    let mut e = experiment(
+        "cornell",
+        (CELL * columns as u32, CELL * rows as u32),
+        settings,
+    );
     let centre = 0.5 * PITCH * Vec3::new(columns as f32 - 1.0, rows as f32 - 1.0, 0.0);
     let fov = 2.0_f32;
     let far = 0.5 * PITCH * rows as f32 / (0.5 * fov).to_radians().tan();
@@ -222,17 +287,30 @@ fn direct(scene: &Scene, columns: usize, rows: usize, how: &How) -> Vec<Vec<f32>
         How::Method(settings) => {
             let base = [("voxel_dim", "16"), ("shadow_dim", "256")];
             let e = viewed(columns, rows, &[&base[..], settings].concat());
-            let (mut session, _) = lab.prepare(&e, scene, |_| Ok(vec!["direct".into()])).unwrap();
+            let (mut session, _) = lab
+                .prepare(&e, scene, |_| Ok(vec!["direct".into()]))
+                .unwrap();
             session.frame(0.0).unwrap();
             session.finish().unwrap();
-            common::floats(&mut session, "direct", 0).iter().map(|t| t[0]).collect()
+            common::floats(&mut session, "direct", 0)
+                .iter()
+                .map(|t| t[0])
+                .collect()
         }
         How::Reference => {
             let home = common::home();
             let e = viewed(columns, rows, &[]);
             let lab = common::lab(home.path());
-            let found = gather(&lab, &e, &scene, 1, Goal::Samples(32), &mut |_| ControlFlow::Continue(())).unwrap();
-            found.parts["direct"].mean.rgb.iter().map(|t| t[0]).collect()
+            let found = gather(&lab, &e, &scene, 1, Goal::Samples(32), &mut |_| {
+                ControlFlow::Continue(())
+            })
+            .unwrap();
+            found.parts["direct"]
+                .mean
+                .rgb
+                .iter()
+                .map(|t| t[0])
+                .collect()
         }
     };
     assert_clean(&lab);
@@ -241,14 +319,17 @@ fn direct(scene: &Scene, columns: usize, rows: usize, how: &How) -> Vec<Vec<f32>
         let y = CELL as usize * (rows - 1 - row) + CELL as usize / 2;
         texels[y * width + CELL as usize * column + CELL as usize / 2]
     };
-    (0..rows).map(|row| (0..columns).map(|column| middle(column, row)).collect()).collect()
+    (0..rows)
+        .map(|row| (0..columns).map(|column| middle(column, row)).collect())
+        .collect()
 }
 
 const ABOVE: Vec3 = Vec3::new(0.0, -0.96, -0.28);
 const BELOW: Vec3 = Vec3::new(0.0, 0.96, -0.28);
 
 fn open(path: &Path) -> Scene {
-    let mut scene = Scene::open(&path.to_string_lossy(), &|_, _| ControlFlow::Continue(())).unwrap();
+    let mut scene =
+        Scene::open(&path.to_string_lossy(), &|_, _| ControlFlow::Continue(())).unwrap();
     scene.sky = Vec3::ZERO;
     scene
 }
@@ -278,10 +359,21 @@ fn a_map_that_leans_up_looks_like_slats_that_lean_up() {
                 for (row, mirror) in found.iter().zip(MIRRORS) {
                     // Mirrored in y or z, slats as seen from +z lean down.
                     let lit = (light == "above") == (mirror.y * mirror.z > 0.0);
-                    assert_eq!(row[0] > 0.5, lit, "{name}, light from {light}, slats mirrored by {mirror}: {}", row[0]);
+                    assert_eq!(
+                        row[0] > 0.5,
+                        lit,
+                        "{name}, light from {light}, slats mirrored by {mirror}: {}",
+                        row[0]
+                    );
                     for (column, value) in row.iter().enumerate().skip(1) {
-                        let what = format!("{name}, light from {light}, mirrored by {mirror}, case {column}");
-                        assert!((value - row[0]).abs() < 0.02, "{what}: {value} and not {}", row[0]);
+                        let what = format!(
+                            "{name}, light from {light}, mirrored by {mirror}, case {column}"
+                        );
+                        assert!(
+                            (value - row[0]).abs() < 0.02,
+                            "{what}: {value} and not {}",
+                            row[0]
+                        );
                     }
                 }
             }
@@ -296,21 +388,41 @@ fn maps_of_obj_files_lean_as_their_pictures_do() {
     let mut mtl = "newmtl plain\n".to_owned();
     let mut obj = "mtllib cases.mtl\nvn 0 0.70710678 0.70710678\nvn 0 0 1\n".to_owned();
     let mut corners = 0;
-    let mut quad = |obj: &mut String, quad: [Vec3; 4], uvs: [Vec2; 4], normal: u32, column: usize| {
-        for (p, t) in quad.iter().zip(uvs) {
-            let at = *p + place_of(column, 0);
-            obj.push_str(&format!("v {} {} {}\nvt {} {}\n", at.x, at.y, at.z, t.x, 1.0 - t.y));
-        }
-        let corner = |i: u32| format!("{0}/{0}/{normal}", corners + i);
-        obj.push_str(&format!("f {} {} {} {}\n", corner(1), corner(2), corner(3), corner(4)));
-        corners += 4;
-    };
+    let mut quad =
+        |obj: &mut String, quad: [Vec3; 4], uvs: [Vec2; 4], normal: u32, column: usize| {
+            for (p, t) in quad.iter().zip(uvs) {
+                let at = *p + place_of(column, 0);
+                obj.push_str(&format!(
+                    "v {} {} {}\nvt {} {}\n",
+                    at.x,
+                    at.y,
+                    at.z,
+                    t.x,
+                    1.0 - t.y
+                ));
+            }
+            let corner = |i: u32| format!("{0}/{0}/{normal}", corners + i);
+            obj.push_str(&format!(
+                "f {} {} {} {}\n",
+                corner(1),
+                corner(2),
+                corner(3),
+                corner(4)
+            ));
+            corners += 4;
+        };
     obj.push_str("usemtl plain\n");
-    slats().iter().for_each(|slat| quad(&mut obj, *slat, CORNERS, 1, 0));
+    slats()
+        .iter()
+        .for_each(|slat| quad(&mut obj, *slat, CORNERS, 1, 0));
     for (i, entry) in ["norm", "map_Bump -bm 1.0"].iter().enumerate() {
         for (j, laying) in LAYINGS.iter().enumerate() {
             let column = 1 + i * LAYINGS.len() + j;
-            std::fs::write(dir.path().join(format!("{column}_normal.png")), png(texel(*laying))).unwrap();
+            std::fs::write(
+                dir.path().join(format!("{column}_normal.png")),
+                png(texel(*laying)),
+            )
+            .unwrap();
             mtl.push_str(&format!("newmtl m{column}\n{entry} {column}_normal.png\n"));
             obj.push_str(&format!("usemtl m{column}\n"));
             quad(&mut obj, flat(), CORNERS.map(|c| uv(c, *laying)), 2, column);
@@ -324,7 +436,11 @@ fn maps_of_obj_files_lean_as_their_pictures_do() {
         let found = &direct(&scene, COLUMNS, 1, &SHADERS[0].1)[0];
         assert_eq!(found[0] > 0.5, lit, "slats: {}", found[0]);
         for (column, value) in found.iter().enumerate().skip(1) {
-            assert!((value - found[0]).abs() < 0.02, "case {column}: {value} and not {}", found[0]);
+            assert!(
+                (value - found[0]).abs() < 0.02,
+                "case {column}: {value} and not {}",
+                found[0]
+            );
         }
     }
 }
@@ -338,18 +454,30 @@ fn scales_of_normal_maps_are_those_of_the_specification() {
     let mut file = File::new();
     for (column, scale) in scales.iter().enumerate() {
         let material = file.material(Some(texel(LAYINGS[0])), *scale);
-        let mesh = file.mesh(&[flat()], Vec3::Z, Some(CORNERS.map(|c| uv(c, LAYINGS[0]))), None, material);
+        let mesh = file.mesh(
+            &[flat()],
+            Vec3::Z,
+            Some(CORNERS.map(|c| uv(c, LAYINGS[0]))),
+            None,
+            material,
+        );
         file.place(mesh, place_of(column, 0), Vec3::ONE);
     }
     file.write(&path);
     let mut scene = open(&path);
     scene.lights = vec![sun(Vec3::NEG_Z)];
     // Without a lobe direct light is albedo times the cosine.
-    scene.materials.iter_mut().for_each(|m| (m.specular, m.base_color) = (0.0, glam::Vec4::ONE));
+    scene
+        .materials
+        .iter_mut()
+        .for_each(|m| (m.specular, m.base_color) = (0.0, glam::Vec4::ONE));
     for (name, how) in SHADERS {
         for (value, scale) in direct(&scene, scales.len(), 1, &how)[0].iter().zip(scales) {
             let cosine = 1.0 / (1.0 + scale * scale).sqrt();
-            assert!((value - cosine).abs() < 0.01, "{name}, scale {scale}: {value} and not {cosine}");
+            assert!(
+                (value - cosine).abs() < 0.01,
+                "{name}, scale {scale}: {value} and not {cosine}"
+            );
         }
     }
 }

@@ -32,25 +32,51 @@ fn textures(group: &str) -> &'static [&'static str] {
 fn context(name: &str) -> &'static [(&'static str, &'static str)] {
     match name {
         "volume_snap" => &[("volume", "camera"), ("volume_size", "(24, 24, 24)")],
-        "warp_viewport" => {
-            &[("warp", "spline"), ("voxelizer", "raster"), ("conservative", "off"), ("warp_alpha", "0.05")]
-        }
-        "fallback" => &[("warp", "perspective"), ("warp_near", "1.0"), ("warp_far", "6.0")],
-        "warp" => &[("warp_alpha", "0.25"), ("warp_near", "1.0"), ("warp_far", "6.0")],
+        "warp_viewport" => &[
+            ("warp", "spline"),
+            ("voxelizer", "raster"),
+            ("conservative", "off"),
+            ("warp_alpha", "0.05"),
+        ],
+        "fallback" => &[
+            ("warp", "perspective"),
+            ("warp_near", "1.0"),
+            ("warp_far", "6.0"),
+        ],
+        "warp" => &[
+            ("warp_alpha", "0.25"),
+            ("warp_near", "1.0"),
+            ("warp_far", "6.0"),
+        ],
         "voxel_view" | "density" => &[("view", "voxels")],
         "conservative" => &[("voxelizer", "raster")],
         "trace" => &[("exact_rays", "8")],
         "tess_levels" | "tess_rate" => &[("voxelizer", "tessellated")],
         "volume_center" | "volume_size" => &[("volume", "box")],
-        "volume_ahead" => {
-            &[("volume", "camera"), ("volume_size", "(48, 48, 48)"), ("volume_snap", "voxel"), ("cascades", "2")]
-        }
-        "volume_offset" => &[("volume", "camera"), ("volume_size", "(24, 24, 24)"), ("volume_snap", "voxel")],
-        "volume_turn" => &[("warp", "perspective"), ("warp_near", "1.0"), ("warp_far", "40")],
+        "volume_ahead" => &[
+            ("volume", "camera"),
+            ("volume_size", "(48, 48, 48)"),
+            ("volume_snap", "voxel"),
+            ("cascades", "2"),
+        ],
+        "volume_offset" => &[
+            ("volume", "camera"),
+            ("volume_size", "(24, 24, 24)"),
+            ("volume_snap", "voxel"),
+        ],
+        "volume_turn" => &[
+            ("warp", "perspective"),
+            ("warp_near", "1.0"),
+            ("warp_far", "40"),
+        ],
         "warp_alpha" => &[("warp", "spline")],
         "warp_steepness" => &[("warp", "logistic")],
         "warp_near" | "warp_far" => &[("warp", "perspective")],
-        "density_axis" => &[("view", "voxels"), ("density", "surfaces"), ("warp", "logistic")],
+        "density_axis" => &[
+            ("view", "voxels"),
+            ("density", "surfaces"),
+            ("warp", "logistic"),
+        ],
         "voxel_view_cascade" => &[("view", "voxels"), ("cascades", "2")],
         "voxel_view_mip" => &[("view", "voxels")],
         "exact_rays" => &[("trace", "cone_rays")],
@@ -59,12 +85,21 @@ fn context(name: &str) -> &'static [(&'static str, &'static str)] {
 }
 
 /// Parameters that are for speed or memory, not for the picture.
-const SAME_PICTURE: [&str; 6] =
-    ["volume_scroll", "gbuffer", "shadow_map", "voxelizer", "voxel_capacity", "fragment_capacity"];
+const SAME_PICTURE: [&str; 6] = [
+    "volume_scroll",
+    "gbuffer",
+    "shadow_map",
+    "voxelizer",
+    "voxel_capacity",
+    "fragment_capacity",
+];
 
 /// What two frames of a still picture do not show, and the test that does.
-const ELSEWHERE: [(&str, &str); 3] =
-    [("bounce_frames", "turns.rs"), ("gather_rest", "turns.rs"), ("temporal_cut", "volume.rs")];
+const ELSEWHERE: [(&str, &str); 3] = [
+    ("bounce_frames", "turns.rs"),
+    ("gather_rest", "turns.rs"),
+    ("temporal_cut", "volume.rs"),
+];
 
 /// What depends on the order in which fragments come, which no two frames of a GPU share.
 const BY_ORDER: [&str; 1] = ["merge=running_average"];
@@ -107,10 +142,20 @@ fn run(
     e.scene = scene.to_string_lossy().into_owned();
     e.size = (32, 24);
     for (name, value) in BASE.iter().chain(settings) {
-        e.params.push((Loc { value: (*name).to_string(), at: At::default() }, (*value).to_string()));
+        e.params.push((
+            Loc {
+                value: (*name).to_string(),
+                at: At::default(),
+            },
+            (*value).to_string(),
+        ));
     }
     let scene = common::scene(&e.scene);
-    let all = wanted.iter().chain(&["display"]).map(|w| (*w).to_string()).collect();
+    let all = wanted
+        .iter()
+        .chain(&["display"])
+        .map(|w| (*w).to_string())
+        .collect();
     let (mut session, _) = lab.prepare(&e, scene, |_| Ok(all))?;
     for _ in 0..2 {
         session.frame(0.0)?; // what voxels reflect to each other is seen in the second
@@ -122,7 +167,10 @@ fn run(
         index.is_some_and(|i| !session.program.plan.textures[i].usage.is_empty())
     };
     let names: Vec<&str> = wanted.iter().filter(made).copied().collect();
-    names.into_iter().map(|name| Ok((name.to_string(), session.texels(name, 0, 0)?.bytes))).collect()
+    names
+        .into_iter()
+        .map(|name| Ok((name.to_string(), session.texels(name, 0, 0)?.bytes)))
+        .collect()
 }
 
 /// Of numbers of pictures as small as these.
@@ -131,7 +179,10 @@ const BASE: [(&str, &str); 2] = [("voxel_dim", "32"), ("shadow_dim", "256")];
 /// The value of a parameter where nothing is said.
 fn unset(param: &Param) -> String {
     let base = BASE.iter().find(|(name, _)| *name == param.name);
-    base.map_or_else(|| param.default.to_string(), |(_, value)| (*value).to_string())
+    base.map_or_else(
+        || param.default.to_string(),
+        |(_, value)| (*value).to_string(),
+    )
 }
 
 /// The options of a choice or a flag; of numbers the default and another.
@@ -143,7 +194,12 @@ fn options(param: &Param) -> Vec<String> {
         (_, "voxel_dim") => "48".into(),
         (_, "voxel_samples") => "1".into(),
         (_, "cascades" | "diffuse_steps" | "specular_steps") => "2".into(),
-        (_, "shadow_maps") => if number(&param.default) == 2.0 { "1" } else { "2" }.into(),
+        (_, "shadow_maps") => if number(&param.default) == 2.0 {
+            "1"
+        } else {
+            "2"
+        }
+        .into(),
         (_, "volume_offset") => "(1.5, 0, 0.5)".into(),
         (_, "volume_turn") => "30".into(),
         (_, "probe") => "(16, 12)".into(),
@@ -152,7 +208,9 @@ fn options(param: &Param) -> Vec<String> {
         (_, "injection_exposure") => "3".into(),
         (Kind::Int | Kind::Float, _) => between(param, number(&param.default)).to_string(),
         (Kind::Vector(_) | Kind::Colour, _) => match &param.default {
-            Value::Vector(v) => Value::Vector(v.iter().map(|x| between(param, *x)).collect()).to_string(),
+            Value::Vector(v) => {
+                Value::Vector(v.iter().map(|x| between(param, *x)).collect()).to_string()
+            }
             other => panic!("{} has the default {other}", param.name),
         },
     };
@@ -171,17 +229,43 @@ fn number(value: &Value) -> f64 {
 fn between(param: &Param, default: f64) -> f64 {
     let (low, high) = param.range.unwrap_or((0.0, 1.0));
     let high = high.min(default.abs().mul_add(8.0, 2.0));
-    let far = if high - default > default - low { high } else { low };
+    let far = if high - default > default - low {
+        high
+    } else {
+        low
+    };
     let value = default + (far - default) / 2.0;
-    if matches!(param.kind, Kind::Int) { value.round() } else { value }
+    if matches!(param.kind, Kind::Int) {
+        value.round()
+    } else {
+        value
+    }
 }
 
 #[test]
 fn every_option_has_a_line_of_help() {
-    let home = Workspace { root: root().to_path_buf(), cache: None };
-    for graph in ["rays.ron", "cones.ron", "warps.ron", "temporal.ron", "thesis.ron", "reference.ron"] {
-        for param in load(&home.graph_path(graph), &home.folders()).unwrap().params.list {
-            let lines = param.option_help.iter().filter(|help| !help.is_empty()).count();
+    let home = Workspace {
+        root: root().to_path_buf(),
+        cache: None,
+    };
+    for graph in [
+        "rays.ron",
+        "cones.ron",
+        "warps.ron",
+        "temporal.ron",
+        "thesis.ron",
+        "reference.ron",
+    ] {
+        for param in load(&home.graph_path(graph), &home.folders())
+            .unwrap()
+            .params
+            .list
+        {
+            let lines = param
+                .option_help
+                .iter()
+                .filter(|help| !help.is_empty())
+                .count();
             assert_eq!(lines, param.kind.options().len(), "{graph}: {}", param.name);
         }
     }
@@ -190,10 +274,24 @@ fn every_option_has_a_line_of_help() {
 #[test]
 fn every_option_builds_renders_and_changes_what_its_group_says() {
     let (lab, scenes) = (lab(root()), Scenes::new());
-    let home = Workspace { root: root().to_path_buf(), cache: None };
-    let params = |graph: &str| load(&home.graph_path(graph), &home.folders()).unwrap().params.list;
+    let home = Workspace {
+        root: root().to_path_buf(),
+        cache: None,
+    };
+    let params = |graph: &str| {
+        load(&home.graph_path(graph), &home.folders())
+            .unwrap()
+            .params
+            .list
+    };
     let (mut options_run, mut wrong, mut tried) = (0, Vec::new(), BTreeSet::new());
-    for graph in ["rays.ron", "cones.ron", "warps.ron", "temporal.ron", "thesis.ron"] {
+    for graph in [
+        "rays.ron",
+        "cones.ron",
+        "warps.ron",
+        "temporal.ron",
+        "thesis.ron",
+    ] {
         for param in params(graph) {
             // The graphs of corrected methods are made of the same parts: each parameter is tried once.
             if graph != "thesis.ron" && !tried.insert(param.name.clone()) {
@@ -205,12 +303,22 @@ fn every_option_builds_renders_and_changes_what_its_group_says() {
                 continue;
             }
             // The running average depends on the order in which fragments come.
-            let exact: &[(&str, &str)] =
-                if graph == "thesis.ron" && param.name != "merge" { &[("merge", "average")] } else { &[] };
-            let (mut context, wanted) = ([context(&param.name), exact].concat(), textures(&param.group));
+            let exact: &[(&str, &str)] = if graph == "thesis.ron" && param.name != "merge" {
+                &[("merge", "average")]
+            } else {
+                &[]
+            };
+            let (mut context, wanted) = (
+                [context(&param.name), exact].concat(),
+                textures(&param.group),
+            );
             context.retain(|(name, _)| params(graph).iter().any(|p| p.name == *name));
             let before = run(&lab, graph, &scenes.of(&param.name), &context, wanted).unwrap();
-            assert!(!before.is_empty(), "{graph}: nothing of {wanted:?} is made for '{}'", param.name);
+            assert!(
+                !before.is_empty(),
+                "{graph}: nothing of {wanted:?} is made for '{}'",
+                param.name
+            );
             for option in options(&param) {
                 let what = format!("{graph}, {}={option}", param.name);
                 let found = match run(
@@ -221,7 +329,9 @@ fn every_option_builds_renders_and_changes_what_its_group_says() {
                     wanted,
                 ) {
                     Ok(found) => found,
-                    Err(LabError::Input(errors)) if errors.iter().all(|e| e.message.contains("does not have")) => {
+                    Err(LabError::Input(errors))
+                        if errors.iter().all(|e| e.message.contains("does not have")) =>
+                    {
                         println!("{what}: skipped, {}", errors[0].message);
                         continue;
                     }
@@ -238,7 +348,11 @@ fn every_option_builds_renders_and_changes_what_its_group_says() {
                 if default != (found == before) && !SAME_PICTURE.contains(&param.name.as_str()) {
                     wrong.push(format!(
                         "{what}: {}",
-                        if default { "the default changes the picture" } else { "nothing changes" }
+                        if default {
+                            "the default changes the picture"
+                        } else {
+                            "nothing changes"
+                        }
                     ));
                 }
             }

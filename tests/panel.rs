@@ -28,20 +28,41 @@ fn has(texts: &[String], text: &str) -> bool {
 fn the_panel_begins_with_what_the_graph_pins_and_finds_names_however_they_are_written() {
     let mut driver = small();
     let first = driver.first_picture();
-    let titles = ["Cone count", "Aperture", "Steps", "Bias", "LOD offset", "Warp", "Warp alpha"];
-    let tops: Vec<f64> = titles.iter().map(|title| driver.find("Label", title)[1]).collect();
+    let titles = [
+        "Cone count",
+        "Aperture",
+        "Steps",
+        "Bias",
+        "LOD offset",
+        "Warp",
+        "Warp alpha",
+    ];
+    let tops: Vec<f64> = titles
+        .iter()
+        .map(|title| driver.find("Label", title)[1])
+        .collect();
     assert!(tops.is_sorted(), "{tops:?}");
-    driver.texts_until("the aperture that the graph chooses", |texts| has(texts, "Aperture, auto (6 deg)"));
+    driver.texts_until("the aperture that the graph chooses", |texts| {
+        has(texts, "Aperture, auto (6 deg)")
+    });
     let group = driver.find("", "Tracing (3)");
 
     for typed in ["lod offset", "lodoffset"] {
         driver.keys(&[CONTROL, u32::from(b'f')]);
         driver.text(typed);
-        driver.texts_until("what was searched for", |texts| has(texts, "lod_offset") && !has(texts, "exposure"));
+        driver.texts_until("what was searched for", |texts| {
+            has(texts, "lod_offset") && !has(texts, "exposure")
+        });
         driver.keys(&[ESCAPE]);
-        driver.texts_until("the groups as they were", |texts| has(texts, "Cone count") && !has(texts, "lod_offset"));
+        driver.texts_until("the groups as they were", |texts| {
+            has(texts, "Cone count") && !has(texts, "lod_offset")
+        });
     }
-    assert_eq!(driver.find("", "Tracing (3)"), group, "the panel is as wide as it was, its groups folded");
+    assert_eq!(
+        driver.find("", "Tracing (3)"),
+        group,
+        "the panel is as wide as it was, its groups folded"
+    );
 
     // A drag takes the keys from the search: undo is of the parameter.
     driver.keys(&[CONTROL, u32::from(b'f')]);
@@ -57,7 +78,9 @@ fn the_panel_begins_with_what_the_graph_pins_and_finds_names_however_they_are_wr
     driver.picture(mark, 0, &first);
     driver.keys(&[CONTROL, u32::from(b'f')]);
     driver.text("zzz");
-    driver.texts_until("that nothing matches", |texts| has(texts, "nothing matches"));
+    driver.texts_until("that nothing matches", |texts| {
+        has(texts, "nothing matches")
+    });
     driver.click("Button", "clear the search");
     driver.texts_until("everything", |texts| has(texts, "Cone count"));
 
@@ -66,8 +89,12 @@ fn the_panel_begins_with_what_the_graph_pins_and_finds_names_however_they_are_wr
     driver.keys(&[CONTROL, u32::from(b'f')]);
     driver.text("volume_turn");
     driver.click("Button", "use warps.ron for volume_turn");
-    driver.wait(mark, "the other graph", |e| e["event"] == "built" && e["side"] == 0);
-    driver.texts_until("its parameters", |texts| !has(texts, "use warps.ron for volume_turn"));
+    driver.wait(mark, "the other graph", |e| {
+        e["event"] == "built" && e["side"] == 0
+    });
+    driver.texts_until("its parameters", |texts| {
+        !has(texts, "use warps.ron for volume_turn")
+    });
     driver.close();
 }
 
@@ -79,8 +106,13 @@ fn a_scene_that_cannot_be_loaded_leaves_everything_as_it_was() {
     driver.click("", "scene: cornell");
     driver.click("", "sponza");
     driver.event(mark, "load failed");
-    driver.texts_until("the scene that is shown", |texts| has(texts, "scene: cornell"));
-    assert!(!has(&driver.texts(), "Restart device"), "no device is at fault");
+    driver.texts_until("the scene that is shown", |texts| {
+        has(texts, "scene: cornell")
+    });
+    assert!(
+        !has(&driver.texts(), "Restart device"),
+        "no device is at fault"
+    );
     assert_eq!(driver.resting(0), first);
 
     // A capture and an experiment name the scene that they show.
@@ -88,7 +120,11 @@ fn a_scene_that_cannot_be_loaded_leaves_everything_as_it_was() {
     driver.keys(&[F12]);
     let captured = driver.wait_at_most(PATIENCE, mark, "a capture", |e| e["event"] == "captured");
     assert_eq!(captured["ok"], true, "{captured}");
-    assert!(driver.file("captures/opened/experiment.ron").contains("\"cornell\""));
+    assert!(
+        driver
+            .file("captures/opened/experiment.ron")
+            .contains("\"cornell\"")
+    );
 
     // Undo does not lead to the scene that failed.
     driver.click("", "Display");
@@ -106,7 +142,11 @@ fn a_scene_that_cannot_be_loaded_leaves_everything_as_it_was() {
     driver.picture(mark, 0, &first);
     std::thread::sleep(Duration::from_millis(300));
     driver.now();
-    assert!(driver.events[mark..].iter().all(|e| e["event"] != "load failed" && e["event"] != "loaded"));
+    assert!(
+        driver.events[mark..]
+            .iter()
+            .all(|e| e["event"] != "load failed" && e["event"] != "loaded")
+    );
     driver.close();
 }
 
@@ -114,13 +154,26 @@ fn a_scene_that_cannot_be_loaded_leaves_everything_as_it_was() {
 fn the_window_says_what_is_wrong_with_a_scene() {
     let folder = tempfile::tempdir().unwrap();
     let model = folder.path().join("one.obj");
-    std::fs::write(&model, "mtllib one.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    std::fs::write(
+        &model,
+        "mtllib one.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+    )
+    .unwrap();
     std::fs::write(folder.path().join("one.mtl"), "newmtl a\nmap_Kd gone.png\n").unwrap();
-    let mut driver = WindowDriver::open(CONES, &["--size", "160x120", "--scene", model.to_str().unwrap()]);
+    let mut driver = WindowDriver::open(
+        CONES,
+        &["--size", "160x120", "--scene", model.to_str().unwrap()],
+    );
     let loaded = driver.event(0, "loaded");
-    assert!(loaded["warnings"].to_string().contains("gone.png"), "{loaded}");
+    assert!(
+        loaded["warnings"].to_string().contains("gone.png"),
+        "{loaded}"
+    );
     driver.texts_until("the warning", |texts| {
-        texts.iter().any(|t| t.starts_with("scene: ") && t.contains("gone.png")) && has(texts, "Warnings (1)")
+        texts
+            .iter()
+            .any(|t| t.starts_with("scene: ") && t.contains("gone.png"))
+            && has(texts, "Warnings (1)")
     });
     // Beside the scene's name on every tab; a click shows the list.
     driver.click("", "Graph");
@@ -132,7 +185,9 @@ fn the_window_says_what_is_wrong_with_a_scene() {
 
     let mut driver = WindowDriver::open(CONES, &["--size", "160x120", "--scene", "gone.obj"]);
     driver.event(0, "load failed");
-    driver.texts_until("that there is no scene", |texts| has(texts, "no scene") && has(texts, "scene: none"));
+    driver.texts_until("that there is no scene", |texts| {
+        has(texts, "no scene") && has(texts, "scene: none")
+    });
     let mark = driver.now();
     driver.click("", "scene: none");
     driver.click("", "cornell");
@@ -159,9 +214,13 @@ fn saving_says_beside_the_field_what_became_of_it() {
     name(&mut driver, "../x");
     let mark = driver.now();
     driver.click("Button", "save");
-    let why = driver.event(mark, "not saved")["why"].as_str().unwrap().to_string();
+    let why = driver.event(mark, "not saved")["why"]
+        .as_str()
+        .unwrap()
+        .to_string();
     let field = driver.find("", "experiment name");
-    let said = driver.widget(|w| w["label"] == why.as_str() && w["rect"][0].as_f64() > Some(field[0] - 20.0));
+    let said = driver
+        .widget(|w| w["label"] == why.as_str() && w["rect"][0].as_f64() > Some(field[0] - 20.0));
     assert!(said[1] - field[3] < 30.0, "{said:?} stands below {field:?}");
 
     name(&mut driver, "con fig");
@@ -169,9 +228,15 @@ fn saving_says_beside_the_field_what_became_of_it() {
     driver.click("Button", "save");
     driver.event(mark, "saved");
     let saved = driver.file("configs/con-fig.ron");
-    assert!(saved.contains("\"bounces\"") && !saved.contains("probe"), "{saved}");
+    assert!(
+        saved.contains("\"bounces\"") && !saved.contains("probe"),
+        "{saved}"
+    );
     driver.texts_until("the corrected name", |texts| {
-        has(texts, "experiment: con-fig") && texts.iter().any(|t| t.starts_with("saved ") && t.ends_with("con-fig.ron"))
+        has(texts, "experiment: con-fig")
+            && texts
+                .iter()
+                .any(|t| t.starts_with("saved ") && t.ends_with("con-fig.ron"))
     });
     driver.close();
 }
@@ -192,7 +257,13 @@ fn a_sequence_says_how_far_it_is_and_can_be_stopped() {
     }
     driver.click("Button", "cancel");
     let ended = driver.event(mark, "sequence");
-    assert!(ended["text"].as_str().unwrap().starts_with("cancelled after "), "{ended}");
+    assert!(
+        ended["text"]
+            .as_str()
+            .unwrap()
+            .starts_with("cancelled after "),
+        "{ended}"
+    );
 
     // Its folder has frames now: that is said beside the button.
     let mark = driver.now();
@@ -210,9 +281,17 @@ fn a_place_in_a_message_opens_the_editor() {
     let place = driver.place();
     let display = driver.file("shaders/display/display.comp");
     let mark = driver.now();
-    driver.rename_into("shaders/display/display.comp", &with(&display, "params.exposure", "params.exposre"));
+    driver.rename_into(
+        "shaders/display/display.comp",
+        &with(&display, "params.exposure", "params.exposre"),
+    );
     let failed = driver.event(mark, "failed");
-    assert!(failed["errors"].to_string().contains("did you mean 'exposure'?"), "{failed}");
+    assert!(
+        failed["errors"]
+            .to_string()
+            .contains("did you mean 'exposure'?"),
+        "{failed}"
+    );
     let label = |t: &&String| t.contains("display.comp:") && t.contains("exposre");
     driver.texts_until("the message", |texts| texts.iter().any(|t| label(&t)));
     assert_eq!(driver.place(), place, "the picture stays where it is");
@@ -221,15 +300,25 @@ fn a_place_in_a_message_opens_the_editor() {
     let rect = driver.find("", &text);
     driver.click_at((rect[0] + 40.0, rect[1] + 6.0));
     driver.event(mark, "editor");
-    let line = 1 + display.lines().position(|l| l.contains("params.exposure")).unwrap();
+    let line = 1 + display
+        .lines()
+        .position(|l| l.contains("params.exposure"))
+        .unwrap();
     let until = std::time::Instant::now() + PATIENCE;
     while !driver.home.path().join(format!("opened-{line}")).is_file() {
         assert!(std::time::Instant::now() < until, "no editor was started");
         std::thread::sleep(Duration::from_millis(20));
     }
     assert_eq!(driver.pictures(0).last(), Some(&first));
-    let failures = driver.events.iter().filter(|e| e["event"] == "failed").count();
-    assert_eq!(failures, 1, "the message does not change the picture's size");
+    let failures = driver
+        .events
+        .iter()
+        .filter(|e| e["event"] == "failed")
+        .count();
+    assert_eq!(
+        failures, 1,
+        "the message does not change the picture's size"
+    );
     driver.close();
 }
 
@@ -244,14 +333,24 @@ fn the_picture_is_zoomed_into_and_the_panels_make_room_for_it() {
     driver.wheel(at, 3, &[CONTROL]);
     let width = |r: [f64; 4]| r[2] - r[0];
     let mark = driver.now();
-    driver.wait_place("a larger picture", |place| width(place) > 1.2 * width(whole));
+    driver.wait_place("a larger picture", |place| {
+        width(place) > 1.2 * width(whole)
+    });
     driver.keys(&[HOME]);
     driver.wait_place("the whole picture", |place| place == whole);
     driver.keys(&[u32::from(b'h')]);
-    driver.texts_until("no panels", |texts| !has(texts, "Cone count") && !has(texts, "Motion"));
+    driver.texts_until("no panels", |texts| {
+        !has(texts, "Cone count") && !has(texts, "Motion")
+    });
     driver.keys(&[u32::from(b'h')]);
-    driver.texts_until("panels", |texts| has(texts, "Cone count") && has(texts, "Motion"));
-    assert!(driver.events[mark..].iter().all(|e| e["event"] != "picture" || e["fingerprint"] == first.as_str()));
+    driver.texts_until("panels", |texts| {
+        has(texts, "Cone count") && has(texts, "Motion")
+    });
+    assert!(
+        driver.events[mark..]
+            .iter()
+            .all(|e| e["event"] != "picture" || e["fingerprint"] == first.as_str())
+    );
     driver.close();
 }
 
@@ -261,14 +360,22 @@ fn a_window_of_large_points_fits_its_screen() {
     let mut driver = WindowDriver::open_with(CONES, &["--size", "160x120"], &scale);
     driver.first_picture();
     let (width, height) = driver.size();
-    assert!(width <= 1400 && height <= 900, "{width}x{height} on a screen of 1400x900");
+    assert!(
+        width <= 1400 && height <= 900,
+        "{width}x{height} on a screen of 1400x900"
+    );
     driver.close();
 }
 
 /// A picture of the sky gives the light that it has, whatever was edited before it came.
 #[test]
 fn a_new_sky_keeps_its_own_tint() {
-    let open = || WindowDriver::open(&CONES.replace("cornell", "white-sky"), &["--size", "160x120"]);
+    let open = || {
+        WindowDriver::open(
+            &CONES.replace("cornell", "white-sky"),
+            &["--size", "160x120"],
+        )
+    };
     let sky = |driver: &mut WindowDriver| {
         let texels = image::Rgb32FImage::from_pixel(8, 4, image::Rgb([0.2, 0.4, 0.6]));
         texels.save(driver.home.path().join("own.hdr")).unwrap();
@@ -278,7 +385,9 @@ fn a_new_sky_keeps_its_own_tint() {
         let mark = driver.now();
         driver.keys(&[RETURN]);
         driver.event(mark, "loaded");
-        driver.texts_until("the picture's name", |texts| texts.iter().any(|t| t.contains("own.hdr")));
+        driver.texts_until("the picture's name", |texts| {
+            texts.iter().any(|t| t.contains("own.hdr"))
+        });
         driver.resting(0)
     };
     let expected = {
@@ -294,7 +403,11 @@ fn a_new_sky_keeps_its_own_tint() {
     driver.drag((x, y), (x + 60.0, y));
     driver.other_picture(mark, 0, &white);
     driver.find("Button", "reset lights");
-    assert_eq!(sky(&mut driver), expected, "the sky is lit as if nothing had been edited");
+    assert_eq!(
+        sky(&mut driver),
+        expected,
+        "the sky is lit as if nothing had been edited"
+    );
     driver.close();
 }
 
@@ -310,7 +423,9 @@ fn a_and_b_are_timed_over_the_same_frames() {
         let (x, y) = centre(rect);
         let mark = driver.now();
         driver.drag((x, y), (x + by * (rect[2] - rect[0]), y));
-        driver.wait(mark, "a picture", |e| e["event"] == "picture" && e["side"] == 0);
+        driver.wait(mark, "a picture", |e| {
+            e["event"] == "picture" && e["side"] == 0
+        });
     }
     driver.resting(0);
     let mark = driver.now();
@@ -323,14 +438,23 @@ fn a_and_b_are_timed_over_the_same_frames() {
     driver.click("Button", "CSV");
     let exported = driver.event(mark, "exported");
     assert_eq!(exported["ok"], true, "{exported}");
-    let file = driver.file(exported["text"].as_str().unwrap().trim_start_matches("wrote "));
+    let file = driver.file(
+        exported["text"]
+            .as_str()
+            .unwrap()
+            .trim_start_matches("wrote "),
+    );
     let mut reader = csv::Reader::from_reader(file.as_bytes());
     let mut frames: [Vec<u64>; 2] = Default::default();
     for row in reader.records().map(Result::unwrap) {
         frames[usize::from(&row[0] == "B")].push(row[1].parse().unwrap());
         let number = |i: usize| row[i].parse::<f64>().unwrap_or(0.0);
         let passes: f64 = (5..row.len()).map(number).sum();
-        assert!(passes <= 1.001 * number(4), "passes take {passes} ms of {} ms: {row:?}", number(4));
+        assert!(
+            passes <= 1.001 * number(4),
+            "passes take {passes} ms of {} ms: {row:?}",
+            number(4)
+        );
     }
     assert!(!frames[0].is_empty());
     assert_eq!(frames[0].len(), frames[1].len(), "{frames:?}");

@@ -10,12 +10,21 @@ use glam::Vec3;
 use std::sync::Arc;
 
 const SIZE: (u32, u32) = (152, 90); // no multiple of the tiles' 32 or their blocks' 8
-const GBUFFER: [&str; 4] = ["gbufferBase", "gbufferNormals", "gbufferEmission", "gbufferDistance"];
+const GBUFFER: [&str; 4] = [
+    "gbufferBase",
+    "gbufferNormals",
+    "gbufferEmission",
+    "gbufferDistance",
+];
 
 fn session(lab: &Lab, scene: &Arc<Scene>, settings: &[(&str, &str)], wanted: &[&str]) -> Session {
     let base = [("voxel_dim", "16"), ("view", "normal")];
     let e = experiment(&scene.name, SIZE, &[&base[..], settings].concat());
-    lab.prepare(&e, scene.clone(), |_| Ok(wanted.iter().map(|w| (*w).to_string()).collect())).unwrap().0
+    lab.prepare(&e, scene.clone(), |_| {
+        Ok(wanted.iter().map(|w| (*w).to_string()).collect())
+    })
+    .unwrap()
+    .0
 }
 
 fn run(lab: &Lab, session: &mut Session, camera: Option<&PlacedCamera>) {
@@ -28,7 +37,10 @@ fn run(lab: &Lab, session: &mut Session, camera: Option<&PlacedCamera>) {
 }
 
 fn gbuffer(session: &mut Session) -> Vec<Vec<u8>> {
-    GBUFFER.iter().map(|name| session.texels(name, 0, 0).unwrap().bytes).collect()
+    GBUFFER
+        .iter()
+        .map(|name| session.texels(name, 0, 0).unwrap().bytes)
+        .collect()
 }
 
 /// The scene's own camera, one close to a surface so that triangles cross the near plane, and one that looks along a wall.
@@ -36,7 +48,11 @@ fn cameras(scene: &Scene) -> Vec<Option<PlacedCamera>> {
     let (low, high) = scene.bounds();
     let at = |t: [f32; 3]| low + (high - low) * Vec3::from(t);
     let placed = |eye: Vec3, target: Vec3| Some(PlacedCamera::new(eye.into(), target.into(), 70.0));
-    vec![None, placed(at([0.4, 0.06, 0.5]), at([0.9, 0.05, 0.45])), placed(at([0.1, 0.5, 0.02]), at([1.0, 0.4, 0.0]))]
+    vec![
+        None,
+        placed(at([0.4, 0.06, 0.5]), at([0.9, 0.05, 0.45])),
+        placed(at([0.1, 0.5, 0.02]), at([1.0, 0.4, 0.0])),
+    ]
 }
 
 /// Pixels that see another surface than any of those around it in the other picture.
@@ -67,8 +83,15 @@ fn threads_see_the_surfaces_that_the_rasteriser_sees() {
         for (i, camera) in cameras(&scene).iter().enumerate() {
             run(&lab, &mut drawn, camera.as_ref());
             run(&lab, &mut threads, camera.as_ref());
-            let (a, b) = (floats(&mut drawn, "gbufferDistance", 0), floats(&mut threads, "gbufferDistance", 0));
-            let differ = a.iter().zip(&b).filter(|(a, b)| (a[0] - b[0]).abs() > 1e-3 * a[0].max(b[0])).count();
+            let (a, b) = (
+                floats(&mut drawn, "gbufferDistance", 0),
+                floats(&mut threads, "gbufferDistance", 0),
+            );
+            let differ = a
+                .iter()
+                .zip(&b)
+                .filter(|(a, b)| (a[0] - b[0]).abs() > 1e-3 * a[0].max(b[0]))
+                .count();
             // Of masks the gradients of textures decide, which the rasteriser takes from pairs of pixels.
             // Elsewhere a rasteriser's own 1/256 of a pixel, to which it moves vertices: most at a horizon, a row of the picture.
             // NVIDIA's (H100, H200): 14 of the atrium's, up to 80 of the leaves', and one along a wall most of a row, lost and found.
@@ -77,16 +100,34 @@ fn threads_see_the_surfaces_that_the_rasteriser_sees() {
                 ("huge-ground", false) => (0.02, 2 * SIZE.0 as usize),
                 (_, software) => (0.005, if software { 12 } else { 20 }),
             };
-            assert!(differ as f64 <= share * a.len() as f64, "{name}, camera {i}: {differ} of {} pixels", a.len());
+            assert!(
+                differ as f64 <= share * a.len() as f64,
+                "{name}, camera {i}: {differ} of {} pixels",
+                a.len()
+            );
             let (lost, found) = (strangers(&a, &b), strangers(&b, &a));
-            assert!(lost + found <= most, "{name}, camera {i}: {lost} surfaces lost, {found} found");
+            assert!(
+                lost + found <= most,
+                "{name}, camera {i}: {lost} surfaces lost, {found} found"
+            );
             // Where both see one surface they see it alike: colour, roughness, normals.
             for texture in ["gbufferBase", "gbufferNormals"] {
-                let (u, v) = (floats(&mut drawn, texture, 0), floats(&mut threads, texture, 0));
-                let alike =
-                    a.iter().zip(&b).zip(u.iter().zip(&v)).filter(|((a, b), _)| (a[0] - b[0]).abs() <= 1e-3 * a[0]);
-                let off = alike.filter(|(_, (u, v))| (0..2).any(|k| (u[k] - v[k]).abs() > 0.1)).count();
-                assert!(off as f64 <= 0.02 * a.len() as f64, "{name}, camera {i}: {texture} differs in {off} pixels");
+                let (u, v) = (
+                    floats(&mut drawn, texture, 0),
+                    floats(&mut threads, texture, 0),
+                );
+                let alike = a
+                    .iter()
+                    .zip(&b)
+                    .zip(u.iter().zip(&v))
+                    .filter(|((a, b), _)| (a[0] - b[0]).abs() <= 1e-3 * a[0]);
+                let off = alike
+                    .filter(|(_, (u, v))| (0..2).any(|k| (u[k] - v[k]).abs() > 0.1))
+                    .count();
+                assert!(
+                    off as f64 <= 0.02 * a.len() as f64,
+                    "{name}, camera {i}: {texture} differs in {off} pixels"
+                );
             }
         }
     }
@@ -104,7 +145,11 @@ fn full_queues_and_any_order_give_the_same_bits() {
     for name in ["atrium", "foliage"] {
         let scene = scene(name);
         let shuffled = Arc::new(scene.shuffled(7));
-        let settings = [("gbuffer", "compute"), ("shadow_map", "compute"), ("shadow_dim", "256")];
+        let settings = [
+            ("gbuffer", "compute"),
+            ("shadow_map", "compute"),
+            ("shadow_dim", "256"),
+        ];
         let wanted = [&GBUFFER[..], &["shadowWords"]].concat();
         let camera = &cameras(&scene)[1];
         let bits = |lab: &Lab, scene: &Arc<Scene>, settings: &[(&str, &str)]| {
@@ -115,8 +160,14 @@ fn full_queues_and_any_order_give_the_same_bits() {
             all
         };
         let expected = bits(&roomy, &scene, &settings);
-        assert!(bits(&cramped, &scene, &settings) == expected, "{name}: full queues");
-        assert!(bits(&roomy, &shuffled, &settings) == expected, "{name}: shuffled");
+        assert!(
+            bits(&cramped, &scene, &settings) == expected,
+            "{name}: full queues"
+        );
+        assert!(
+            bits(&roomy, &shuffled, &settings) == expected,
+            "{name}: shuffled"
+        );
     }
 }
 
@@ -129,10 +180,18 @@ fn nothing_is_lost_between_triangles() {
     let mut live = session(&lab, &room, &[("gbuffer", "compute")], &GBUFFER);
     for i in 0..24 {
         let turn = i as f32 * 0.7;
-        let eye = low + (high - low) * Vec3::new(0.5 + 0.3 * turn.sin(), 0.5 + 0.2 * turn.cos(), 0.5);
+        let eye =
+            low + (high - low) * Vec3::new(0.5 + 0.3 * turn.sin(), 0.5 + 0.2 * turn.cos(), 0.5);
         let target = eye + Vec3::new((2.3 * turn).cos(), (1.7 * turn).sin(), (2.3 * turn).sin());
-        run(&lab, &mut live, Some(&PlacedCamera::new(eye.into(), target.into(), 80.0)));
-        let holes = floats(&mut live, "gbufferDistance", 0).iter().filter(|d| d[0] <= 0.0).count();
+        run(
+            &lab,
+            &mut live,
+            Some(&PlacedCamera::new(eye.into(), target.into(), 80.0)),
+        );
+        let holes = floats(&mut live, "gbufferDistance", 0)
+            .iter()
+            .filter(|d| d[0] <= 0.0)
+            .count();
         assert_eq!(holes, 0, "view {i}");
     }
 }
@@ -143,11 +202,23 @@ fn lights_see_the_same_depths() {
     let atrium = scene("atrium");
     let (low, high) = atrium.bounds();
     let middle = low + (high - low) * Vec3::new(0.5, 0.4, 0.5);
-    let kinds = [LightKind::Directional, LightKind::Point, LightKind::Spot { inner: 0.3, outer: 0.7 }];
+    let kinds = [
+        LightKind::Directional,
+        LightKind::Point,
+        LightKind::Spot {
+            inner: 0.3,
+            outer: 0.7,
+        },
+    ];
     for (number, name) in ["atrium", "foliage"].iter().enumerate() {
         for kind in kinds {
             let mut changed = Scene::clone(&scene(name));
-            let light = Light { kind, position: middle, shadow: true, ..changed.lights[0].clone() };
+            let light = Light {
+                kind,
+                position: middle,
+                shadow: true,
+                ..changed.lights[0].clone()
+            };
             changed.lights = vec![light];
             let changed = Arc::new(changed);
             let settings = |how| [("shadow_map", how), ("shadow_dim", "256")];
@@ -159,10 +230,20 @@ fn lights_see_the_same_depths() {
                 let words = |s: &mut Session, name: &str| -> Vec<f32> {
                     bytemuck::pod_collect_to_vec(&s.texels(name, 0, layer).unwrap().bytes)
                 };
-                let (a, b) = (words(&mut drawn, "shadowMap"), words(&mut threads, "shadowWords"));
-                let differ = a.iter().zip(&b).filter(|(a, b)| (**a - **b).abs() > 1e-4).count();
+                let (a, b) = (
+                    words(&mut drawn, "shadowMap"),
+                    words(&mut threads, "shadowWords"),
+                );
+                let differ = a
+                    .iter()
+                    .zip(&b)
+                    .filter(|(a, b)| (**a - **b).abs() > 1e-4)
+                    .count();
                 let share = if number == 1 { 0.02 } else { 0.005 };
-                assert!(differ as f64 <= share * a.len() as f64, "{name} {kind:?} {layer}: {differ} texels");
+                assert!(
+                    differ as f64 <= share * a.len() as f64,
+                    "{name} {kind:?} {layer}: {differ} texels"
+                );
             }
         }
     }

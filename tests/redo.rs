@@ -42,20 +42,40 @@ struct Pair {
 fn build(lab: &Lab, e: &Experiment, scene: &Arc<Scene>, old: Option<&Session>) -> Session {
     let loaded = lab.home.load_for(e, scene, &lab.gpu.info).unwrap();
     let wanted = WANTED.map(String::from).to_vec();
-    lab.build(e, &loaded, scene.clone(), wanted, old.map(Session::reusable_parts).as_ref()).unwrap()
+    lab.build(
+        e,
+        &loaded,
+        scene.clone(),
+        wanted,
+        old.map(Session::reusable_parts).as_ref(),
+    )
+    .unwrap()
 }
 
 impl Pair {
     fn new(lab: &Lab, scene_name: &str, settings: &[(&str, &str)]) -> Pair {
         let base = [("voxel_dim", "24"), ("shadow_dim", "256")];
-        let (experiment, scene) = (experiment(scene_name, SIZE, &[&base[..], settings].concat()), scene(scene_name));
+        let (experiment, scene) = (
+            experiment(scene_name, SIZE, &[&base[..], settings].concat()),
+            scene(scene_name),
+        );
         let mut sides = [(); 2].map(|()| build(lab, &experiment, &scene, None));
         sides[1].set_redo(Redo::Changed);
-        Pair { experiment, scene, sides }
+        Pair {
+            experiment,
+            scene,
+            sides,
+        }
     }
 
     fn set(&mut self, lab: &Lab, name: &str, value: &str) {
-        self.experiment.params.push((Loc { value: name.into(), at: At::default() }, value.into()));
+        self.experiment.params.push((
+            Loc {
+                value: name.into(),
+                at: At::default(),
+            },
+            value.into(),
+        ));
         for side in &mut self.sides {
             let mut params = side.params.clone();
             params.set(name, value).unwrap();
@@ -70,20 +90,26 @@ impl Pair {
             next.swap_in(side).unwrap();
             *side = next;
         }
-        assert_eq!(self.sides[1].redo(), Redo::Changed, "the program that follows does what this one did");
+        assert_eq!(
+            self.sides[1].redo(),
+            Redo::Changed,
+            "the program that follows does what this one did"
+        );
     }
 
     fn edit(&mut self, lab: &Lab, home: &Path, numbers: &mut Numbers) -> &'static str {
         let (a, b) = (numbers.unit(), numbers.unit());
         match numbers.below(12) {
             0 | 1 => {
-                let placed = PlacedCamera::new((1.2 * a - 0.6, 1.0 + b, 2.6), (0.0, 1.0, -0.5), 60.0);
+                let placed =
+                    PlacedCamera::new((1.2 * a - 0.6, 1.0 + b, 2.6), (0.0, 1.0, -0.5), 60.0);
                 self.sides.iter_mut().for_each(|s| s.place_camera(&placed));
                 "the camera"
             }
             2 => {
                 let mut lights = self.scene.lights.clone();
-                (lights[0].color, lights[0].position.x) = (lights[0].color * (0.2 + a), lights[0].position.x + 0.2 * b);
+                (lights[0].color, lights[0].position.x) =
+                    (lights[0].color * (0.2 + a), lights[0].position.x + 0.2 * b);
                 let sky = self.scene.sky;
                 assert!(self.sides.iter_mut().all(|s| s.set_lights(&lights, sky)));
                 "a lamp"
@@ -102,17 +128,28 @@ impl Pair {
                 "a number that voxels depend on"
             }
             6 | 7 => {
-                self.sides.iter_mut().for_each(|s| s.set_time(f64::from(3.0 * a)));
+                self.sides
+                    .iter_mut()
+                    .for_each(|s| s.set_time(f64::from(3.0 * a)));
                 "an actor"
             }
             8 => {
                 let dim = if a < 0.5 { "24" } else { "32" };
-                self.experiment.params.push((Loc { value: "voxel_dim".into(), at: At::default() }, dim.into()));
+                self.experiment.params.push((
+                    Loc {
+                        value: "voxel_dim".into(),
+                        at: At::default(),
+                    },
+                    dim.into(),
+                ));
                 self.rebuild(lab);
                 "the voxels"
             }
             9 => {
-                let (file, layer) = (home.join("shaders/inject/inject.comp"), if a < 0.5 { "0.12" } else { "0.01" });
+                let (file, layer) = (
+                    home.join("shaders/inject/inject.comp"),
+                    if a < 0.5 { "0.12" } else { "0.01" },
+                );
                 let text = std::fs::read_to_string(&file).unwrap();
                 let (before, after) = text.split_once("LAYER = ").unwrap();
                 let (_, after) = after.split_once(';').unwrap();
@@ -127,10 +164,21 @@ impl Pair {
     /// A frame of each; the passes that slept.
     fn frame(&mut self, what: &str) -> BTreeSet<String> {
         let [all, changed] = self.sides.each_mut().map(run);
-        assert!(all.asleep.is_empty(), "{what}: {:?} slept where all is done", all.asleep);
+        assert!(
+            all.asleep.is_empty(),
+            "{what}: {:?} slept where all is done",
+            all.asleep
+        );
         for name in WANTED {
-            let [a, b] = self.sides.each_mut().map(|s| s.texels(name, 0, 0).unwrap().bytes);
-            assert!(a == b, "{what}: '{name}' differs; asleep: {:?}", names(&self.sides[1], &changed.asleep));
+            let [a, b] = self
+                .sides
+                .each_mut()
+                .map(|s| s.texels(name, 0, 0).unwrap().bytes);
+            assert!(
+                a == b,
+                "{what}: '{name}' differs; asleep: {:?}",
+                names(&self.sides[1], &changed.asleep)
+            );
         }
         names(&self.sides[1], &changed.asleep)
     }
@@ -152,11 +200,22 @@ fn run(session: &mut Session) -> FrameTimes {
 }
 
 fn names(session: &Session, passes: &[usize]) -> BTreeSet<String> {
-    passes.iter().map(|p| session.graph.passes[*p].value.name.value.clone()).collect()
+    passes
+        .iter()
+        .map(|p| session.graph.passes[*p].value.name.value.clone())
+        .collect()
 }
 
-const BY_THREADS: [(&str, &str); 3] = [("voxelizer", "compute"), ("shadow_map", "compute"), ("gbuffer", "compute")];
-const BY_RASTER: [(&str, &str); 3] = [("voxelizer", "raster"), ("shadow_map", "raster"), ("gbuffer", "raster")];
+const BY_THREADS: [(&str, &str); 3] = [
+    ("voxelizer", "compute"),
+    ("shadow_map", "compute"),
+    ("gbuffer", "compute"),
+];
+const BY_RASTER: [(&str, &str); 3] = [
+    ("voxelizer", "raster"),
+    ("shadow_map", "raster"),
+    ("gbuffer", "raster"),
+];
 
 #[test]
 fn pictures_are_the_same_whatever_is_edited() {
@@ -167,7 +226,11 @@ fn pictures_are_the_same_whatever_is_edited() {
     let lab = lab(home.path());
     let mut seed = 1;
     for path in [BY_THREADS, BY_RASTER] {
-        for more in [&[][..], &[("temporal_factor", "0.5")], &[("cascades", "2"), ("volume", "camera")]] {
+        for more in [
+            &[][..],
+            &[("temporal_factor", "0.5")],
+            &[("cascades", "2"), ("volume", "camera")],
+        ] {
             let mut pair = Pair::new(&lab, "moving-box", &[&path[..], more].concat());
             let mut numbers = Numbers(0x9e37_79b9 + seed);
             seed += 1;
@@ -184,7 +247,10 @@ fn pictures_are_the_same_whatever_is_edited() {
             println!("{path:?} {more:?}: {slept} passes slept, gathering rested {rested} times");
             // Voxels that are the mean of frames, or lie around the camera, depend on what they were: they are never still.
             let rests = rested > 5 || !more.is_empty();
-            assert!(slept > 200 && rests, "{slept} passes slept, {rested} times rested: nothing was tested");
+            assert!(
+                slept > 200 && rests,
+                "{slept} passes slept, {rested} times rested: nothing was tested"
+            );
         }
     }
     assert_clean(&lab);
@@ -194,10 +260,26 @@ fn pictures_are_the_same_whatever_is_edited() {
 fn what_nothing_has_changed_sleeps() {
     let lab = lab(root());
     for (path, shadow, seen) in [
-        (BY_THREADS, &["shadow clear", "shadow triangles", "shadow bins", "shadow tiles"][..], "visibility tiles"),
+        (
+            BY_THREADS,
+            &[
+                "shadow clear",
+                "shadow triangles",
+                "shadow bins",
+                "shadow tiles",
+            ][..],
+            "visibility tiles",
+        ),
         (BY_RASTER, &["shadow map"][..], "G-buffer"),
     ] {
-        let voxels = ["volume", "surfel sums clear", "surfel scan", "surfel assign", "voxel merge", "surfel planes"];
+        let voxels = [
+            "volume",
+            "surfel sums clear",
+            "surfel scan",
+            "surfel assign",
+            "voxel merge",
+            "surfel planes",
+        ];
         // A lamp of one shadow map: layers are drawn one by one, and a clear of one leaves the others.
         let mut pair = Pair::new(&lab, "cornell", &path);
         let slept = pair.frame("the first");
@@ -205,13 +287,20 @@ fn what_nothing_has_changed_sleeps() {
         // What the frame before left is kept beside it: both are filled first.
         pair.frame("the second");
         let slept = pair.frame("the third");
-        assert!(shadow.iter().chain([&seen]).all(|p| slept.contains(*p)), "{slept:?}");
+        assert!(
+            shadow.iter().chain([&seen]).all(|p| slept.contains(*p)),
+            "{slept:?}"
+        );
         // The camera moves: what is seen is drawn, what the lamp sees is not.
         for number in 0..3 {
-            let placed = PlacedCamera::new((2.5 + 0.1 * number as f32, 2.5, 9.0), (2.5, 2.5, 0.0), 40.0);
+            let placed =
+                PlacedCamera::new((2.5 + 0.1 * number as f32, 2.5, 9.0), (2.5, 2.5, 0.0), 40.0);
             pair.sides.iter_mut().for_each(|s| s.place_camera(&placed));
             let slept = pair.frame("the camera moves");
-            assert!(shadow.iter().chain(&voxels).all(|p| slept.contains(*p)) && !slept.contains(seen), "{slept:?}");
+            assert!(
+                shadow.iter().chain(&voxels).all(|p| slept.contains(*p)) && !slept.contains(seen),
+                "{slept:?}"
+            );
         }
         // The lamp moves.
         let mut lights = pair.scene.lights.clone();
@@ -226,7 +315,10 @@ fn what_nothing_has_changed_sleeps() {
         pair.frame("and still rests");
         pair.set(&lab, "exposure", "1");
         let slept = pair.frame("the exposure");
-        assert!(shadow.iter().chain([&seen]).all(|p| slept.contains(*p)), "{slept:?}");
+        assert!(
+            shadow.iter().chain([&seen]).all(|p| slept.contains(*p)),
+            "{slept:?}"
+        );
     }
     assert_clean(&lab);
 }
@@ -246,21 +338,40 @@ fn what_gathers_over_frames_rests() {
         let mut slept = BTreeSet::new();
         for frame in 0..64 + 16 {
             slept = pair.frame(&format!("frame {frame}"));
-            assert!(frame > 64 || !slept.contains(gather), "frame {frame}: {slept:?}");
+            assert!(
+                frame > 64 || !slept.contains(gather),
+                "frame {frame}: {slept:?}"
+            );
             pictures.push(mean(&floats(&mut pair.sides[0], "radiance", 0)));
         }
-        let passes: BTreeSet<usize> = pair.sides[1].program.plan.steps.iter().map(|s| s.pass).collect();
-        assert_eq!(slept, names(&pair.sides[1], &passes.into_iter().collect::<Vec<_>>()), "everything sleeps");
+        let passes: BTreeSet<usize> = pair.sides[1]
+            .program
+            .plan
+            .steps
+            .iter()
+            .map(|s| s.pass)
+            .collect();
+        assert_eq!(
+            slept,
+            names(&pair.sides[1], &passes.into_iter().collect::<Vec<_>>()),
+            "everything sleeps"
+        );
         // Half of the frames would have done: what is missing at the end is less than that.
         let (half, end) = (pictures[32], pictures[79]);
         println!("{path:?}: light of frame 32 {half}, of frame 79 {end}");
-        assert!((half / end - 1.0).abs() < 0.002, "the light of frame 32, {half}, and of the last, {end}");
+        assert!(
+            (half / end - 1.0).abs() < 0.002,
+            "the light of frame 32, {half}, and of the last, {end}"
+        );
         // The camera moves: pixels gather, voxels rest.
         let placed = PlacedCamera::new((2.4, 2.5, 9.0), (2.5, 2.5, 0.0), 40.0);
         pair.sides.iter_mut().for_each(|s| s.place_camera(&placed));
         for frame in 0..3 {
             let slept = pair.frame(&format!("the camera moved, frame {frame}"));
-            assert!(gathering.iter().all(|p| slept.contains(*p)) && !slept.contains(rays), "{slept:?}");
+            assert!(
+                gathering.iter().all(|p| slept.contains(*p)) && !slept.contains(rays),
+                "{slept:?}"
+            );
         }
         // The lamp moves: in the same frame it is injected, and all gather.
         let mut lights = pair.scene.lights.clone();
@@ -268,7 +379,10 @@ fn what_gathers_over_frames_rests() {
         let sky = pair.scene.sky;
         assert!(pair.sides.iter_mut().all(|s| s.set_lights(&lights, sky)));
         let slept = pair.frame("the lamp is brighter");
-        assert!(!slept.contains("inject") && !slept.contains(rays), "{slept:?}");
+        assert!(
+            !slept.contains("inject") && !slept.contains(rays),
+            "{slept:?}"
+        );
         let slept = pair.frame("the lamp was made brighter");
         assert!(gathering.iter().all(|p| !slept.contains(*p)), "{slept:?}");
     }

@@ -15,9 +15,23 @@ use std::sync::Arc;
 use std::time::Duration;
 
 #[track_caller]
-fn trace(lab: &Lab, experiment: &Experiment, scene: &Arc<Scene>, bounces: u32, samples: u64) -> Reference {
+fn trace(
+    lab: &Lab,
+    experiment: &Experiment,
+    scene: &Arc<Scene>,
+    bounces: u32,
+    samples: u64,
+) -> Reference {
     let keep_on = &mut |_| ControlFlow::Continue(());
-    let reference = gather(lab, experiment, scene, bounces, Goal::Samples(samples), keep_on).unwrap();
+    let reference = gather(
+        lab,
+        experiment,
+        scene,
+        bounces,
+        Goal::Samples(samples),
+        keep_on,
+    )
+    .unwrap();
     assert_eq!(reference.samples, samples);
     assert_clean(lab);
     reference
@@ -29,7 +43,11 @@ fn mean(reference: &Reference, part: &str) -> f64 {
 
 /// The bits of all parts.
 fn bits(reference: &Reference) -> Vec<u32> {
-    reference.parts.values().flat_map(|p| p.mean.rgb.iter().flatten().map(|v| v.to_bits())).collect()
+    reference
+        .parts
+        .values()
+        .flat_map(|p| p.mean.rgb.iter().flatten().map(|v| v.to_bits()))
+        .collect()
 }
 
 /// Mean radiance by what it is: a part, or "bounce N", what turn N of the paths adds; "specular 1" of turn 1 alone.
@@ -49,7 +67,11 @@ const CORNELL: Means = &[
 /// The same of `atrium` with `--size 32x24 --camera=5.5,3.5,1,4.9,0.3,2.2,35 --spp 16384 --sky 0.5,0.68,0.95`: a plant
 /// with alpha masks in the sun, on textured tiles with normal maps. Later bounces are left out: few bright paths from
 /// the lanterns make them too noisy for a short test.
-const PLANT: Means = &[("direct", 0.862810, 0.0009), ("occlusion", 0.140000, 0.0042), ("bounce 1", 0.078891, 0.0060)];
+const PLANT: Means = &[
+    ("direct", 0.862810, 0.0009),
+    ("occlusion", 0.140000, 0.0042),
+    ("bounce 1", 0.078891, 0.0060),
+];
 
 /// The same of `small-quad`, `--size 48x36 --spp 8192`: lit by a lamp of 47 x 38 cm alone, places on which both draw.
 const SMALL_QUAD: Means = &[
@@ -60,7 +82,10 @@ const SMALL_QUAD: Means = &[
 ];
 
 /// The same of `emitters`, `--size 48x36 --spp 16384`: 108 lamps of 1 to 4 cm, some on strings and some before walls.
-const EMITTERS: Means = &[("bounce 1", 0.054446, 0.0280), ("bounce 2", 0.034319, 0.0330)];
+const EMITTERS: Means = &[
+    ("bounce 1", 0.054446, 0.0280),
+    ("bounce 2", 0.034319, 0.0330),
+];
 
 /// The same of `sky-window`, `--size 32x24 --spp 16384 --sky sky-window.sky.exr --sun 1000`: a sky and its sun through a
 /// window.
@@ -90,23 +115,45 @@ const PUBLISHED: (&str, &str) = ("shading_model", "cook_torrance");
 fn assert_means(experiment: &Experiment, samples: u64, expected: Means) {
     let home = common::home();
     // That renderer's lobe has the square of the roughness as its width.
-    let model = home.path().join("shaders/modules/shading_model/cook_torrance.glsl");
+    let model = home
+        .path()
+        .join("shaders/modules/shading_model/cook_torrance.glsl");
     let text = std::fs::read_to_string(&model).unwrap();
-    std::fs::write(&model, text.replacen("return roughness;", "return roughness * roughness;", 1)).unwrap();
+    std::fs::write(
+        &model,
+        text.replacen("return roughness;", "return roughness * roughness;", 1),
+    )
+    .unwrap();
     let lab = lab(home.path());
     let scene = scene(&experiment.scene);
-    let bounces = expected.iter().filter(|m| m.0.starts_with("bounce")).count() as u32;
-    let traced: Vec<Reference> = (1..=bounces).map(|k| trace(&lab, experiment, &scene, k, samples)).collect();
-    let indirect =
-        |k: usize| if k == 0 { 0.0 } else { mean(&traced[k - 1], "diffuse") + mean(&traced[k - 1], "specular") };
+    let bounces = expected
+        .iter()
+        .filter(|m| m.0.starts_with("bounce"))
+        .count() as u32;
+    let traced: Vec<Reference> = (1..=bounces)
+        .map(|k| trace(&lab, experiment, &scene, k, samples))
+        .collect();
+    let indirect = |k: usize| {
+        if k == 0 {
+            0.0
+        } else {
+            mean(&traced[k - 1], "diffuse") + mean(&traced[k - 1], "specular")
+        }
+    };
     let mut wrong = Vec::new();
     for (what, recorded, error) in expected {
-        let found = match what.strip_prefix("bounce ").and_then(|k| k.parse::<usize>().ok()) {
+        let found = match what
+            .strip_prefix("bounce ")
+            .and_then(|k| k.parse::<usize>().ok())
+        {
             Some(k) => indirect(k) - indirect(k - 1),
             None => mean(&traced[0], what.strip_suffix(" 1").unwrap_or(what)),
         };
         let ratio = found / recorded;
-        println!("{}, {what}: {found:.6}, recorded {recorded:.6}, ratio {ratio:.4} +- {error:.4}", experiment.scene);
+        println!(
+            "{}, {what}: {found:.6}, recorded {recorded:.6}, ratio {ratio:.4} +- {error:.4}",
+            experiment.scene
+        );
         if (ratio - 1.0).abs() > 0.01 + 2.0 * error {
             wrong.push(format!("{what}: {found} instead of {recorded}"));
         }
@@ -116,36 +163,63 @@ fn assert_means(experiment: &Experiment, samples: u64, expected: Means) {
 
 #[test]
 fn cornell_has_the_light_of_every_bounce_that_an_independent_renderer_finds() {
-    assert_means(&experiment("cornell", (64, 48), &[("pixel", "box"), PUBLISHED]), 256, CORNELL);
+    assert_means(
+        &experiment("cornell", (64, 48), &[("pixel", "box"), PUBLISHED]),
+        256,
+        CORNELL,
+    );
 }
 
 #[test]
 fn textures_and_masks_have_the_light_that_an_independent_renderer_finds() {
     let mut plant = experiment("atrium", (32, 24), &[("pixel", "box"), PUBLISHED]);
     let camera = PlacedCamera::new((5.5, 3.5, 1.0), (4.9, 0.3, 2.2), 35.0);
-    plant.camera = CameraChoice::Placed(PlacedCamera { near: Some(0.01), far: Some(100.0), ..camera });
+    plant.camera = CameraChoice::Placed(PlacedCamera {
+        near: Some(0.01),
+        far: Some(100.0),
+        ..camera
+    });
     assert_means(&plant, 512, PLANT);
 }
 
 #[test]
 fn a_lamp_lights_a_room_as_an_independent_renderer_finds() {
-    assert_means(&experiment("small-quad", (32, 24), &[("pixel", "box"), PUBLISHED]), 256, SMALL_QUAD);
+    assert_means(
+        &experiment("small-quad", (32, 24), &[("pixel", "box"), PUBLISHED]),
+        256,
+        SMALL_QUAD,
+    );
 }
 
 #[test]
 fn many_small_lamps_light_a_room_as_an_independent_renderer_finds() {
-    assert_means(&experiment("emitters", (32, 24), &[("pixel", "box"), PUBLISHED]), 256, EMITTERS);
+    assert_means(
+        &experiment("emitters", (32, 24), &[("pixel", "box"), PUBLISHED]),
+        256,
+        EMITTERS,
+    );
 }
 
 #[test]
 fn a_sky_lights_a_room_through_its_window_as_an_independent_renderer_finds() {
-    assert_means(&experiment("sky-window", (32, 24), &[("pixel", "box"), PUBLISHED]), 256, SKY_WINDOW);
+    assert_means(
+        &experiment("sky-window", (32, 24), &[("pixel", "box"), PUBLISHED]),
+        256,
+        SKY_WINDOW,
+    );
 }
 
 #[test]
 fn a_bright_spot_of_the_sky_lights_a_ball_and_a_floor_as_an_independent_renderer_finds() {
-    let scene = root().join("tests/common/spot/scene.ron").to_string_lossy().into_owned();
-    assert_means(&experiment(&scene, (32, 24), &[("pixel", "box"), PUBLISHED]), 128, SPOT);
+    let scene = root()
+        .join("tests/common/spot/scene.ron")
+        .to_string_lossy()
+        .into_owned();
+    assert_means(
+        &experiment(&scene, (32, 24), &[("pixel", "box"), PUBLISHED]),
+        128,
+        SPOT,
+    );
 }
 
 /// `python3 scripts/independent_own.py own.gltf --size 48x36 --spp 4096` says 0.189308 +- 0.00005 of this room: Mitsuba
@@ -154,8 +228,15 @@ fn a_bright_spot_of_the_sky_lights_a_ball_and_a_floor_as_an_independent_renderer
 fn another_renderers_own_materials_give_the_same_light() {
     let home = common::home();
     let lab = lab(home.path());
-    let path = root().join("tests/common/own/scene.ron").to_string_lossy().into_owned();
-    let own = experiment(&path, (48, 36), &[("pixel", "box"), ("shading_model", "single_scattering")]);
+    let path = root()
+        .join("tests/common/own/scene.ron")
+        .to_string_lossy()
+        .into_owned();
+    let own = experiment(
+        &path,
+        (48, 36),
+        &[("pixel", "box"), ("shading_model", "single_scattering")],
+    );
     let found = mean(&trace(&lab, &own, &scene(&path), 64, 128), "total");
     println!("{found:.6} of 0.189308");
     assert!((found / 0.189308 - 1.0).abs() < 0.01, "{found}");
@@ -172,18 +253,41 @@ fn the_furnace_gains_what_every_bounce_must_bring() {
     assert!(least > 0.0 && most < 0.1, "{least} {most}");
     let series = |a: f64, bounces: u32| (1..=bounces).map(|k| a.powi(k as i32 - 1)).sum::<f64>();
     for bounces in [1, 2, 4, 32] {
-        let reference = trace(&lab, &experiment("furnace", (32, 24), &[PUBLISHED]), &furnace, bounces, 64);
-        let [total, diffuse, specular] = ["total", "diffuse", "specular"].map(|p| mean(&reference, p));
-        println!("{bounces} bounces: total {total:.5}, diffuse {diffuse:.5}, specular {specular:.5}");
+        let reference = trace(
+            &lab,
+            &experiment("furnace", (32, 24), &[PUBLISHED]),
+            &furnace,
+            bounces,
+            64,
+        );
+        let [total, diffuse, specular] =
+            ["total", "diffuse", "specular"].map(|p| mean(&reference, p));
+        println!(
+            "{bounces} bounces: total {total:.5}, diffuse {diffuse:.5}, specular {specular:.5}"
+        );
         let [low, high] = [0.5 + least, 0.5 + most].map(|a| 0.5 * series(a, bounces));
-        assert!(diffuse > low * 0.998 && diffuse < high * 1.002, "{bounces}: {low} {diffuse} {high}");
-        assert!((total - 1.0 - diffuse - specular).abs() < 1e-4 * total, "{bounces}: {total}");
+        assert!(
+            diffuse > low * 0.998 && diffuse < high * 1.002,
+            "{bounces}: {low} {diffuse} {high}"
+        );
+        assert!(
+            (total - 1.0 - diffuse - specular).abs() < 1e-4 * total,
+            "{bounces}: {total}"
+        );
         if bounces == 1 {
             // Every ray brings 1, whichever way it goes: no noise.
-            let worst =
-                reference.parts["diffuse"].mean.rgb.iter().flatten().map(|v| (v - 0.5).abs()).fold(0.0, f32::max);
+            let worst = reference.parts["diffuse"]
+                .mean
+                .rgb
+                .iter()
+                .flatten()
+                .map(|v| (v - 0.5).abs())
+                .fold(0.0, f32::max);
             assert!(worst < 1e-5, "a pixel is off by {worst}");
-            assert!(specular > least * 0.99 && specular < most * 1.01, "{least} {specular} {most}");
+            assert!(
+                specular > least * 0.99 && specular < most * 1.01,
+                "{least} {specular} {most}"
+            );
         }
         assert_eq!(mean(&reference, "occlusion"), 0.0);
         assert_eq!(mean(&reference, "direct"), 0.0);
@@ -213,24 +317,40 @@ fn specular_albedo(roughness: f64) -> [f64; 2] {
         }
         sum
     });
-    shares.fold([f64::INFINITY, 0.0], |[low, high], s| [low.min(s), high.max(s)])
+    shares.fold([f64::INFINITY, 0.0], |[low, high], s| {
+        [low.min(s), high.max(s)]
+    })
 }
 
 #[test]
 fn a_white_sphere_vanishes_before_a_white_sky() {
     let home = common::home();
     let lab = lab(home.path());
-    let reference = trace(&lab, &experiment("white-sky", (48, 48), &[PUBLISHED]), &scene("white-sky"), 1, 32);
+    let reference = trace(
+        &lab,
+        &experiment("white-sky", (48, 48), &[PUBLISHED]),
+        &scene("white-sky"),
+        1,
+        32,
+    );
     let part = |name: &str| reference.parts[name].mean.rgb.clone();
     let (diffuse, total, open) = (part("diffuse"), part("total"), part("occlusion"));
-    let sphere: Vec<usize> = (0..diffuse.len()).filter(|i| diffuse[*i][0] > 0.0).collect();
+    let sphere: Vec<usize> = (0..diffuse.len())
+        .filter(|i| diffuse[*i][0] > 0.0)
+        .collect();
     assert!(sphere.len() > 500, "{} pixels of the sphere", sphere.len());
-    let over = |values: &[[f32; 3]]| sphere.iter().map(|i| f64::from(values[*i][0])).sum::<f64>() / sphere.len() as f64;
+    let over = |values: &[[f32; 3]]| {
+        sphere.iter().map(|i| f64::from(values[*i][0])).sum::<f64>() / sphere.len() as f64
+    };
     println!("diffuse {:.5}, openness {:.5}", over(&diffuse), over(&open));
     assert!((over(&diffuse) - 1.0).abs() < 0.01, "{}", over(&diffuse));
     assert!((over(&open) - 1.0).abs() < 0.01, "{}", over(&open));
     // Beside it there is nothing but the sky.
-    assert!((0..total.len()).filter(|i| diffuse[*i][0] == 0.0).all(|i| total[i] == [1.0; 3] && open[i] == [1.0; 3]));
+    assert!(
+        (0..total.len())
+            .filter(|i| diffuse[*i][0] == 0.0)
+            .all(|i| total[i] == [1.0; 3] && open[i] == [1.0; 3])
+    );
 }
 
 /// Slope of a line through equidistant points.
@@ -248,12 +368,17 @@ fn twice_the_samples_halve_the_relmse() {
     let home = common::home();
     let lab = lab(home.path());
     let (cornell, experiment) = (scene("cornell"), experiment("cornell", (32, 24), &[]));
-    let steps: Vec<Reference> = (5..=10).map(|i| trace(&lab, &experiment, &cornell, 1, 1 << i)).collect();
+    let steps: Vec<Reference> = (5..=10)
+        .map(|i| trace(&lab, &experiment, &cornell, 1, 1 << i))
+        .collect();
     for part in ["total", "diffuse", "specular", "occlusion"] {
         let noise: Vec<f64> = steps.iter().map(|r| r.parts[part].noise.relmse).collect();
         let slope = slope(&noise.iter().map(|n| n.log2()).collect::<Vec<f64>>());
         println!("{part}: {noise:?}, slope {slope:.3}");
-        assert!((slope + 1.0).abs() <= 0.1, "{part}: slope {slope} of {noise:?}");
+        assert!(
+            (slope + 1.0).abs() <= 0.1,
+            "{part}: slope {slope} of {noise:?}"
+        );
     }
 }
 
@@ -262,39 +387,69 @@ fn samples_depend_on_the_seed_alone_and_not_on_where_a_run_was_stopped() {
     let (one, two) = (common::home(), common::home());
     let cornell = scene("cornell");
     let size = (32, 24);
-    let whole = trace(&lab(one.path()), &experiment("cornell", size, &[]), &cornell, 2, 96);
+    let whole = trace(
+        &lab(one.path()),
+        &experiment("cornell", size, &[]),
+        &cornell,
+        2,
+        96,
+    );
     let lab = lab(two.path());
     let keep_on = &mut |_| ControlFlow::Continue(());
     // Stopped by the first report of progress; what is kept then is found.
-    let part =
-        gather(
-            &lab,
-            &experiment("cornell", size, &[]),
-            &cornell,
-            2,
-            Goal::Samples(96),
-            &mut |_| ControlFlow::Break(()),
-        );
+    let part = gather(
+        &lab,
+        &experiment("cornell", size, &[]),
+        &cornell,
+        2,
+        Goal::Samples(96),
+        &mut |_| ControlFlow::Break(()),
+    );
     assert_eq!(part.unwrap().samples, 32);
-    let kept = find(&lab.home, &experiment("cornell", size, &[]), &cornell, 2).unwrap().unwrap();
+    let kept = find(&lab.home, &experiment("cornell", size, &[]), &cornell, 2)
+        .unwrap()
+        .unwrap();
     assert_eq!(kept.samples, 32);
     assert_ne!(bits(&kept), bits(&whole));
     let mut reports = Vec::new();
-    let resumed = gather(&lab, &experiment("cornell", size, &[]), &cornell, 2, Goal::Samples(96), &mut |now| {
-        reports.push(now.samples);
-        ControlFlow::Continue(())
-    });
+    let resumed = gather(
+        &lab,
+        &experiment("cornell", size, &[]),
+        &cornell,
+        2,
+        Goal::Samples(96),
+        &mut |now| {
+            reports.push(now.samples);
+            ControlFlow::Continue(())
+        },
+    );
     assert_eq!(reports, [64, 96], "it goes on from where it was stopped");
     assert!(bits(&resumed.unwrap()) == bits(&whole));
     // All are there: nothing is traced, progress is silent.
-    let again =
-        gather(&lab, &experiment("cornell", size, &[]), &cornell, 2, Goal::Samples(64), &mut |_| panic!("traced"));
+    let again = gather(
+        &lab,
+        &experiment("cornell", size, &[]),
+        &cornell,
+        2,
+        Goal::Samples(64),
+        &mut |_| panic!("traced"),
+    );
     assert!(bits(&again.unwrap()) == bits(&whole));
-    let other =
-        gather(&lab, &experiment("cornell", size, &[("seed", "2")]), &cornell, 2, Goal::Samples(96), keep_on).unwrap();
+    let other = gather(
+        &lab,
+        &experiment("cornell", size, &[("seed", "2")]),
+        &cornell,
+        2,
+        Goal::Samples(96),
+        keep_on,
+    )
+    .unwrap();
     assert!(bits(&other) != bits(&whole));
     let ratio = mean(&other, "total") / mean(&whole, "total");
-    assert!((ratio - 1.0).abs() < 0.1, "other seed, other picture: {ratio}");
+    assert!(
+        (ratio - 1.0).abs() < 0.1,
+        "other seed, other picture: {ratio}"
+    );
 }
 
 #[test]
@@ -302,7 +457,16 @@ fn a_killed_run_loses_no_kept_sample() {
     let (home, calm) = (common::home(), common::home());
     let run = |home: &Path, samples: &str| {
         let mut command = conelab(home);
-        command.args(["reference", "configs/rays.ron", "--scene", "cornell", "--size", "32x24", "--spp", samples]);
+        command.args([
+            "reference",
+            "configs/rays.ron",
+            "--scene",
+            "cornell",
+            "--size",
+            "32x24",
+            "--spp",
+            samples,
+        ]);
         command
     };
     succeeds(&mut run(home.path(), "64"));
@@ -326,12 +490,20 @@ fn a_killed_run_loses_no_kept_sample() {
 /// Files of the only reference below a home, by name with the SHA-256 of their bytes.
 fn files(home: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let folder = home.join("captures/reference");
-    let only = std::fs::read_dir(folder).unwrap().map(|f| f.unwrap().path()).collect::<Vec<_>>();
+    let only = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|f| f.unwrap().path())
+        .collect::<Vec<_>>();
     assert_eq!(only.len(), 1, "{only:?}");
     let mut files: Vec<(PathBuf, Vec<u8>)> = std::fs::read_dir(&only[0])
         .unwrap()
         .map(|f| f.unwrap().path())
-        .map(|f| (f.strip_prefix(home).unwrap().to_path_buf(), Sha256::digest(std::fs::read(&f).unwrap()).to_vec()))
+        .map(|f| {
+            (
+                f.strip_prefix(home).unwrap().to_path_buf(),
+                Sha256::digest(std::fs::read(&f).unwrap()).to_vec(),
+            )
+        })
         .collect();
     files.sort();
     files
@@ -348,7 +520,9 @@ fn a_reference_is_found_for_what_it_was_made_of_and_for_nothing_else() {
     let plain = || experiment("cornell", (16, 12), &[]);
     let made = trace(&lab, &plain(), &cornell, 1, 32);
     let found = |home: &Workspace, experiment: &Experiment, scene: &Arc<Scene>, bounces: u32| {
-        find(home, experiment, scene, bounces).unwrap().map(|r| bits(&r))
+        find(home, experiment, scene, bounces)
+            .unwrap()
+            .map(|r| bits(&r))
     };
     assert_eq!(found(&lab.home, &plain(), &cornell, 1), Some(bits(&made)));
     // What the method alone uses, and how the picture is shown, are no part of the question.
@@ -356,16 +530,32 @@ fn a_reference_is_found_for_what_it_was_made_of_and_for_nothing_else() {
         let same = experiment("cornell", (16, 12), &[(name, value)]);
         assert!(found(&lab.home, &same, &cornell, 1).is_some(), "{name}");
     }
-    for (name, value) in
-        [("shading_model", "cook_torrance"), ("shading_model", "blinn_phong"), ("seed", "2"), ("pixel", "box")]
-    {
+    for (name, value) in [
+        ("shading_model", "cook_torrance"),
+        ("shading_model", "blinn_phong"),
+        ("seed", "2"),
+        ("pixel", "box"),
+    ] {
         let other = experiment("cornell", (16, 12), &[(name, value)]);
         assert_eq!(found(&lab.home, &other, &cornell, 1), None, "{name}");
     }
     let mut moved = plain();
-    moved.camera = CameraChoice::Placed(PlacedCamera::new((2.78, 2.73, -7.9), (2.78, 2.73, 2.8), 39.3));
+    moved.camera = CameraChoice::Placed(PlacedCamera::new(
+        (2.78, 2.73, -7.9),
+        (2.78, 2.73, 2.8),
+        39.3,
+    ));
     assert_eq!(found(&lab.home, &moved, &cornell, 1), None, "camera");
-    assert_eq!(found(&lab.home, &experiment("cornell", (12, 16), &[]), &cornell, 1), None, "size");
+    assert_eq!(
+        found(
+            &lab.home,
+            &experiment("cornell", (12, 16), &[]),
+            &cornell,
+            1
+        ),
+        None,
+        "size"
+    );
     assert_eq!(found(&lab.home, &plain(), &cornell, 2), None, "bounces");
     let changes: [Change; 4] = [
         ("light", |s| s.lights[0].color.x *= 1.001),
@@ -376,7 +566,11 @@ fn a_reference_is_found_for_what_it_was_made_of_and_for_nothing_else() {
     for (what, change) in changes {
         let mut other = Scene::clone(&cornell);
         change(&mut other);
-        assert_eq!(found(&lab.home, &plain(), &Arc::new(other), 1), None, "{what}");
+        assert_eq!(
+            found(&lab.home, &plain(), &Arc::new(other), 1),
+            None,
+            "{what}"
+        );
     }
     let shader = home.path().join("shaders/common/brdf.glsl");
     let text = std::fs::read_to_string(&shader).unwrap();
@@ -393,12 +587,27 @@ fn damaged_references_are_told_and_not_trusted() {
     let (cornell, experiment) = (scene("cornell"), experiment("cornell", (16, 12), &[]));
     let folder = trace(&lab, &experiment, &cornell, 1, 32).folder;
     let (json, sums) = (folder.join("reference.json"), folder.join("sums-32.exr"));
-    let (record, texels) = (std::fs::read_to_string(&json).unwrap(), std::fs::read(&sums).unwrap());
+    let (record, texels) = (
+        std::fs::read_to_string(&json).unwrap(),
+        std::fs::read(&sums).unwrap(),
+    );
     let rejected = |what: &str, hint: &str| {
-        let error = find(&lab.home, &experiment, &cornell, 1).expect_err(what).to_string();
+        let error = find(&lab.home, &experiment, &cornell, 1)
+            .expect_err(what)
+            .to_string();
         println!("{what}: {error}");
-        assert!(error.contains("delete the folder") && error.contains(hint), "{what}: {error}");
-        let error = gather(&lab, &experiment, &cornell, 1, Goal::Samples(64), &mut |_| ControlFlow::Continue(()));
+        assert!(
+            error.contains("delete the folder") && error.contains(hint),
+            "{what}: {error}"
+        );
+        let error = gather(
+            &lab,
+            &experiment,
+            &cornell,
+            1,
+            Goal::Samples(64),
+            &mut |_| ControlFlow::Continue(()),
+        );
         assert!(error.is_err(), "{what}: more samples were added");
     };
     std::fs::write(&sums, &texels[..texels.len() / 2]).unwrap();
@@ -415,11 +624,31 @@ fn damaged_references_are_told_and_not_trusted() {
     assert!(find(&lab.home, &experiment, &cornell, 1).unwrap().is_none());
     std::fs::write(&sums, &texels).unwrap();
     for (what, text, hint) in [
-        ("half a record", record[..record.len() / 2].to_owned(), "reference.json"),
-        ("another schema", record.replace("conelab-reference-", "conelab-"), "not what this program wrote"),
-        ("another place", record.replace("sums-32.exr", "sums-/../../x"), "not what this program wrote"),
-        ("more samples", record.replace("\"samples\": 32", "\"samples\": 320"), "as many samples"),
-        ("another size", record.replace("16", "61"), "not what this program wrote"),
+        (
+            "half a record",
+            record[..record.len() / 2].to_owned(),
+            "reference.json",
+        ),
+        (
+            "another schema",
+            record.replace("conelab-reference-", "conelab-"),
+            "not what this program wrote",
+        ),
+        (
+            "another place",
+            record.replace("sums-32.exr", "sums-/../../x"),
+            "not what this program wrote",
+        ),
+        (
+            "more samples",
+            record.replace("\"samples\": 32", "\"samples\": 320"),
+            "as many samples",
+        ),
+        (
+            "another size",
+            record.replace("16", "61"),
+            "not what this program wrote",
+        ),
     ] {
         assert_ne!(text, record, "{what}");
         std::fs::write(&json, text).unwrap();
@@ -430,7 +659,14 @@ fn damaged_references_are_told_and_not_trusted() {
     let said = {
         std::fs::write(&sums, &flipped).unwrap();
         let mut command = conelab(home.path());
-        command.args(["reference", "configs/rays.ron", "--scene", "cornell", "--size", "16x12"]);
+        command.args([
+            "reference",
+            "configs/rays.ron",
+            "--scene",
+            "cornell",
+            "--size",
+            "16x12",
+        ]);
         command.args(["--spp", "64", "--bounces", "1"]);
         fails(&mut command)
     };
@@ -448,19 +684,28 @@ fn deep_hierarchies_are_traced() {
         for i in 0..chain {
             // Behind the triangle, where the camera and the light of its front do not come.
             let s = 0.01 * 1.2_f64.powi(i - chain);
-            text += &format!("v {s} {s} -1\nv {} {s} -1\nv {s} {} -1\nf -3 -1 -2\n", 2.0 * s, 2.0 * s);
+            text += &format!(
+                "v {s} {s} -1\nv {} {s} -1\nv {s} {} -1\nf -3 -1 -2\n",
+                2.0 * s,
+                2.0 * s
+            );
         }
         let file = folder.path().join(format!("{copies}-{chain}.obj"));
         std::fs::write(&file, text).unwrap();
         let mut experiment = experiment(file.to_str().unwrap(), (16, 12), &[]);
-        experiment.camera = CameraChoice::Placed(PlacedCamera::new((0.3, 0.3, 2.0), (0.3, 0.3, 0.0), 20.0));
-        let scene = Arc::new(Scene::open(&experiment.scene, &|_, _| ControlFlow::Continue(())).unwrap());
+        experiment.camera =
+            CameraChoice::Placed(PlacedCamera::new((0.3, 0.3, 2.0), (0.3, 0.3, 0.0), 20.0));
+        let scene =
+            Arc::new(Scene::open(&experiment.scene, &|_, _| ControlFlow::Continue(())).unwrap());
         mean(&trace(&lab, &experiment, &scene, 1, 32), "total")
     };
     let one = light(1, 0);
     assert!(one > 0.0);
     for (copies, chain) in [(3000, 0), (1, 300)] {
         let found = light(copies, chain);
-        assert!((found / one - 1.0).abs() < 0.02, "{copies} copies, a chain of {chain}: {found} and not {one}");
+        assert!(
+            (found / one - 1.0).abs() < 0.02,
+            "{copies} copies, a chain of {chain}: {found} and not {one}"
+        );
     }
 }

@@ -62,7 +62,11 @@ impl Bench {
         write(folder.path(), "shaders/count.comp", COUNT);
         write(folder.path(), "shaders/fill.comp", FILL);
         let lab = lab(folder.path());
-        Bench { folder, lab, scene: scene("triangles") }
+        Bench {
+            folder,
+            lab,
+            scene: scene("triangles"),
+        }
     }
 
     fn write(&self, name: &str, text: &str) {
@@ -70,15 +74,27 @@ impl Bench {
     }
 
     fn experiment(&self, params: &str) -> Experiment {
-        let text = format!("(graph: \"graph.ron\", scene: \"triangles\", size: (16, 16), params: {{{params}}})");
+        let text = format!(
+            "(graph: \"graph.ron\", scene: \"triangles\", size: (16, 16), params: {{{params}}})"
+        );
         Experiment::from_text(&self.folder.path().join("run.ron"), &text).unwrap()
     }
 
     fn session(&self, params: &str, old: Option<&Session>) -> Result<Session, LabError> {
         let experiment = self.experiment(params);
-        let loaded = self.lab.home.load(&experiment.graph).map_err(LabError::Input)?;
+        let loaded = self
+            .lab
+            .home
+            .load(&experiment.graph)
+            .map_err(LabError::Input)?;
         let wanted = vec!["count".into(), "sized".into()];
-        self.lab.build(&experiment, &loaded, self.scene.clone(), wanted, old.map(Session::reusable_parts).as_ref())
+        self.lab.build(
+            &experiment,
+            &loaded,
+            self.scene.clone(),
+            wanted,
+            old.map(Session::reusable_parts).as_ref(),
+        )
     }
 
     fn reload(&self, params: &str, old: &mut Session) -> Session {
@@ -104,17 +120,37 @@ fn textures_that_did_not_change_keep_their_content() {
 
     // Another shader of another pass: its pipeline is made anew, nothing else. After odd and even frames alike.
     for (round, value) in [(1, "2.0"), (2, "3.0"), (3, "4.0")] {
-        bench.write("shaders/fill.comp", &FILL.replace("vec4(1.0)", &format!("vec4({value})")));
+        bench.write(
+            "shaders/fill.comp",
+            &FILL.replace("vec4(1.0)", &format!("vec4({value})")),
+        );
         session = bench.reload("", &mut session);
-        assert_eq!(session.program.change, Change { kept: 1, built: 1, resized: 0 });
+        assert_eq!(
+            session.program.change,
+            Change {
+                kept: 1,
+                built: 1,
+                resized: 0
+            }
+        );
         frames(&mut session, 1);
         assert_eq!(floats(&mut session, "count", 0)[5][0], 3.0 + round as f32);
-        assert_eq!(floats(&mut session, "sized", 0)[0][0].to_string(), value.trim_end_matches(".0"));
+        assert_eq!(
+            floats(&mut session, "sized", 0)[0][0].to_string(),
+            value.trim_end_matches(".0")
+        );
     }
 
     // Another size: only the texture that has it is made anew.
     session = bench.reload("\"side\": 16", &mut session);
-    assert_eq!(session.program.change, Change { kept: 2, built: 0, resized: 1 });
+    assert_eq!(
+        session.program.change,
+        Change {
+            kept: 2,
+            built: 0,
+            resized: 1
+        }
+    );
     frames(&mut session, 1);
     assert_eq!(floats(&mut session, "count", 0)[5][0], 7.0);
     assert_eq!(floats(&mut session, "sized", 0).len(), 256);
@@ -126,9 +162,17 @@ fn a_build_that_fails_leaves_the_old_session_whole() {
     let bench = Bench::new();
     let mut session = bench.session("", None).unwrap();
     frames(&mut session, 1);
-    bench.write("shaders/count.comp", &COUNT.replace("params.step", "params.stop"));
-    let Err(LabError::Input(found)) = bench.session("", Some(&session)) else { panic!("it must not build") };
-    assert!(found[0].place.file.ends_with("count.comp") && found[0].place.line == 9, "{found:?}");
+    bench.write(
+        "shaders/count.comp",
+        &COUNT.replace("params.step", "params.stop"),
+    );
+    let Err(LabError::Input(found)) = bench.session("", Some(&session)) else {
+        panic!("it must not build")
+    };
+    assert!(
+        found[0].place.file.ends_with("count.comp") && found[0].place.line == 9,
+        "{found:?}"
+    );
     frames(&mut session, 2);
     assert_eq!(floats(&mut session, "count", 0)[5][0], 3.0);
     assert_clean(&bench.lab);
@@ -145,7 +189,10 @@ fn a_parameter_that_changes_no_plan_is_a_buffer_write() {
     frames(&mut session, 1);
     assert_eq!(floats(&mut session, "count", 0)[5][0], 6.0);
     params.set("side", "9").unwrap();
-    assert!(!session.set_params(&bench.lab, &params).unwrap(), "another size needs other textures");
+    assert!(
+        !session.set_params(&bench.lab, &params).unwrap(),
+        "another size needs other textures"
+    );
 }
 
 /// A third pass that is switched on, the only one that uses a parameter and a texture.
@@ -172,17 +219,32 @@ fn a_shader_is_compiled_when_its_pass_first_runs() {
             "        (name: \"again\", when: \"twice\", shaders: [\"again.comp\"], dispatch: Cover(\"sized\")),\n    ],\n    outputs",
         );
     bench.write("passes/graph.ron", &graph);
-    bench.write("shaders/again.comp", &AGAIN.replace("texelFetch", "texelFetsh"));
+    bench.write(
+        "shaders/again.comp",
+        &AGAIN.replace("texelFetch", "texelFetsh"),
+    );
 
     // A check finds the mistake; a picture that does without is not kept away, nor is what only that shader uses "unused".
-    let Err(found) = bench.lab.home.load("graph.ron") else { panic!("it must not compile") };
+    let Err(found) = bench.lab.home.load("graph.ron") else {
+        panic!("it must not compile")
+    };
     assert!(found[0].place.file.ends_with("again.comp"), "{found:?}");
     let once = bench.experiment("");
-    let loaded = bench.lab.home.load_for(&once, &bench.scene, &bench.lab.gpu.info).unwrap();
+    let loaded = bench
+        .lab
+        .home
+        .load_for(&once, &bench.scene, &bench.lab.gpu.info)
+        .unwrap();
     assert_eq!(loaded.warnings, []);
     let wanted = || vec!["count".into(), "sized".into()];
     let build = |experiment: &Experiment, reuse: Option<&Session>| {
-        bench.lab.build(experiment, &loaded, bench.scene.clone(), wanted(), reuse.map(Session::reusable_parts).as_ref())
+        bench.lab.build(
+            experiment,
+            &loaded,
+            bench.scene.clone(),
+            wanted(),
+            reuse.map(Session::reusable_parts).as_ref(),
+        )
     };
     let mut session = build(&once, None).unwrap();
     frames(&mut session, 1);
@@ -191,15 +253,27 @@ fn a_shader_is_compiled_when_its_pass_first_runs() {
     // Switched on, it is compiled, and its mistake is reported.
     let mut params = session.params.clone();
     params.set("twice", "true").unwrap();
-    assert!(!session.set_params(&bench.lab, &params).unwrap(), "it needs a shader that is not there");
+    assert!(
+        !session.set_params(&bench.lab, &params).unwrap(),
+        "it needs a shader that is not there"
+    );
     let twice = bench.experiment("\"twice\": true");
-    let Err(LabError::Input(found)) = build(&twice, Some(&session)) else { panic!("it must not build") };
+    let Err(LabError::Input(found)) = build(&twice, Some(&session)) else {
+        panic!("it must not build")
+    };
     assert!(found[0].place.file.ends_with("again.comp"), "{found:?}");
     bench.write("shaders/again.comp", AGAIN);
     let mut next = build(&twice, Some(&session)).unwrap();
     next.swap_in(&mut session).unwrap();
     // It stores every texel: the pass that filled them before is needed no more.
-    assert_eq!(next.program.change, Change { kept: 1, built: 1, resized: 0 });
+    assert_eq!(
+        next.program.change,
+        Change {
+            kept: 1,
+            built: 1,
+            resized: 0
+        }
+    );
     frames(&mut next, 1);
     assert_eq!(floats(&mut next, "sized", 0)[0][0], 2.0);
     assert_clean(&bench.lab);
@@ -230,17 +304,33 @@ fn the_method_reloaded_makes_the_picture_of_a_fresh_start() {
         let loaded = lab.home.load(&experiment.graph).unwrap();
         let wanted = vec!["display".to_string()];
         let reuse = live.as_ref().map(Session::reusable_parts);
-        let mut next = lab.build(&experiment, &loaded, cornell.clone(), wanted.clone(), reuse.as_ref()).unwrap();
+        let mut next = lab
+            .build(
+                &experiment,
+                &loaded,
+                cornell.clone(),
+                wanted.clone(),
+                reuse.as_ref(),
+            )
+            .unwrap();
         drop(reuse);
         if let Some(old) = &mut live {
             next.swap_in(old).unwrap();
         }
         frames(&mut next, 1);
         if !step.contains(&("temporal_factor", "0.8")) {
-            let mut fresh = lab.build(&experiment, &loaded, cornell.clone(), wanted, None).unwrap();
+            let mut fresh = lab
+                .build(&experiment, &loaded, cornell.clone(), wanted, None)
+                .unwrap();
             frames(&mut fresh, 1);
-            let (a, b) = (next.texels("display", 0, 0).unwrap().bytes, fresh.texels("display", 0, 0).unwrap().bytes);
-            assert!(a == b, "after {step:?} the picture is not that of a fresh start");
+            let (a, b) = (
+                next.texels("display", 0, 0).unwrap().bytes,
+                fresh.texels("display", 0, 0).unwrap().bytes,
+            );
+            assert!(
+                a == b,
+                "after {step:?} the picture is not that of a fresh start"
+            );
         }
         live = Some(next);
         assert_clean(&lab);

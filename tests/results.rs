@@ -16,16 +16,37 @@ struct Record {
 }
 
 fn record(name: &str) -> Record {
-    let path = root().join("docs/recorded").join(name).with_extension("csv");
+    let path = root()
+        .join("docs/recorded")
+        .join(name)
+        .with_extension("csv");
     let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let head: Vec<&str> = text.lines().map_while(|l| l.strip_prefix("# ")).collect();
-    let [command, device, commit] = head[..] else { panic!("{}: no command, device and commit", path.display()) };
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
-    let names: Vec<String> = reader.headers().unwrap().iter().map(str::to_string).collect();
+    let [command, device, commit] = head[..] else {
+        panic!("{}: no command, device and commit", path.display())
+    };
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .from_reader(text.as_bytes());
+    let names: Vec<String> = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .map(str::to_string)
+        .collect();
     // Of two columns of one name the later holds what was measured.
-    let line = |r: csv::StringRecord| names.iter().cloned().zip(r.iter().map(str::to_string)).collect();
+    let line = |r: csv::StringRecord| {
+        names
+            .iter()
+            .cloned()
+            .zip(r.iter().map(str::to_string))
+            .collect()
+    };
     let lines = reader.records().map(|r| line(r.unwrap())).collect();
-    Record { said: format!("{device}, {commit}: `{command}`"), lines }
+    Record {
+        said: format!("{device}, {commit}: `{command}`"),
+        lines,
+    }
 }
 
 /// A table in Markdown: the head, and lines of cells.
@@ -38,7 +59,9 @@ fn table(head: &[&str], lines: &[Vec<String>]) -> String {
 }
 
 fn number(line: &BTreeMap<String, String>, column: &str) -> f64 {
-    line.get(column).and_then(|v| v.parse().ok()).unwrap_or(f64::NAN)
+    line.get(column)
+        .and_then(|v| v.parse().ok())
+        .unwrap_or(f64::NAN)
 }
 
 /// A path as its file's stem, all else as it is.
@@ -53,9 +76,27 @@ const SLOW: &str = "total, 95th percentile";
 /// A benchmark: a line for each stage, a column for each configuration; medians, ms.
 fn times(name: &str) -> String {
     let record = record(name);
-    let known = ["experiment", "width", "height", "kind", "name", "min ms", "median ms", "p95 ms", "error"];
-    let axes: Vec<&String> = record.lines[0].keys().filter(|k| !known.contains(&k.as_str())).collect();
-    let differs = |column: &str| record.lines.iter().any(|l| l[column] != record.lines[0][column]);
+    let known = [
+        "experiment",
+        "width",
+        "height",
+        "kind",
+        "name",
+        "min ms",
+        "median ms",
+        "p95 ms",
+        "error",
+    ];
+    let axes: Vec<&String> = record.lines[0]
+        .keys()
+        .filter(|k| !known.contains(&k.as_str()))
+        .collect();
+    let differs = |column: &str| {
+        record
+            .lines
+            .iter()
+            .any(|l| l[column] != record.lines[0][column])
+    };
     let title = |line: &BTreeMap<String, String>| {
         let mut parts: Vec<String> = axes.iter().map(|a| short(&line[*a])).collect();
         if differs("experiment") {
@@ -83,39 +124,69 @@ fn times(name: &str) -> String {
         cells.insert((row, column), number(line, "median ms"));
     }
     // Stages of a few hundredths in all columns, one by one, say nothing.
-    let weighs =
-        |row: &&String| columns.iter().any(|c| cells.get(&((*row).clone(), c.clone())).is_some_and(|ms| *ms >= 0.05));
+    let weighs = |row: &&String| {
+        columns.iter().any(|c| {
+            cells
+                .get(&((*row).clone(), c.clone()))
+                .is_some_and(|ms| *ms >= 0.05)
+        })
+    };
     rows.retain(|row| row != "total");
     let mut lines: Vec<Vec<String>> = Vec::new();
     let shown = |row: &String| {
-        let cell = |c: &String| cells.get(&(row.clone(), c.clone())).map_or(String::new(), |ms| format!("{ms:.2}"));
-        std::iter::once(row.clone()).chain(columns.iter().map(cell)).collect()
+        let cell = |c: &String| {
+            cells
+                .get(&(row.clone(), c.clone()))
+                .map_or(String::new(), |ms| format!("{ms:.2}"))
+        };
+        std::iter::once(row.clone())
+            .chain(columns.iter().map(cell))
+            .collect()
     };
     lines.extend(rows.iter().filter(weighs).map(shown));
     let small = rows.iter().filter(|r| !weighs(r)).count();
     let rest = |c: &String| -> f64 {
-        rows.iter().filter(|r| !weighs(r)).filter_map(|r| cells.get(&(r.clone(), c.clone()))).sum()
+        rows.iter()
+            .filter(|r| !weighs(r))
+            .filter_map(|r| cells.get(&(r.clone(), c.clone())))
+            .sum()
     };
     if small > 0 {
         let sums = columns.iter().map(|c| format!("{:.2}", rest(c)));
-        lines.push(std::iter::once(format!("{small} more")).chain(sums).collect());
+        lines.push(
+            std::iter::once(format!("{small} more"))
+                .chain(sums)
+                .collect(),
+        );
     }
     lines.push(shown(&"total".to_string()));
     lines.push(slowest);
-    let head: Vec<&str> = std::iter::once("ms").chain(columns.iter().map(String::as_str)).collect();
+    let head: Vec<&str> = std::iter::once("ms")
+        .chain(columns.iter().map(String::as_str))
+        .collect();
     format!("*{}*\n\n{}", record.said, table(&head, &lines))
 }
 
 /// A record that is JSON, and what is said above its table.
 fn json(name: &str) -> (String, serde_json::Value) {
-    let path = root().join("docs/recorded").join(name).with_extension("json");
+    let path = root()
+        .join("docs/recorded")
+        .join(name)
+        .with_extension("json");
     let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let all: serde_json::Value = serde_json::from_str(&text).unwrap();
-    let (command, commit) = (all["command"].as_str().unwrap(), all["commit"].as_str().unwrap());
+    let (command, commit) = (
+        all["command"].as_str().unwrap(),
+        all["commit"].as_str().unwrap(),
+    );
     let record = all["record"].clone();
     let device = match &record["device"] {
         serde_json::Value::String(name) => name.clone(),
-        device => format!("{}, {}", device["name"].as_str().unwrap(), device["driver"].as_str().unwrap()),
+        device => format!(
+            "{}, {}",
+            device["name"].as_str().unwrap(),
+            device["driver"].as_str().unwrap()
+        ),
     };
     (format!("*{device}, {commit}: `{command}`*"), record)
 }
@@ -125,7 +196,10 @@ fn moving() -> String {
     let (said, record) = json("moving");
     let (mut stages, mut asleep): (Vec<(String, f64)>, usize) = (Vec::new(), 0);
     for pass in record["passes"].as_array().unwrap() {
-        let (stage, ms) = (pass["stage"].as_str().unwrap(), pass["gpu_ms"]["median"].as_f64().unwrap());
+        let (stage, ms) = (
+            pass["stage"].as_str().unwrap(),
+            pass["gpu_ms"]["median"].as_f64().unwrap(),
+        );
         asleep += usize::from(pass["slept"].as_u64() == pass["frames"].as_u64());
         match stages.iter_mut().find(|s| s.0 == stage) {
             Some(of) => of.1 += ms,
@@ -135,8 +209,14 @@ fn moving() -> String {
     let total = record["total_gpu_ms"]["median"].as_f64().unwrap();
     let small: f64 = stages.iter().filter(|s| s.1 < 0.03).map(|s| s.1).sum();
     stages.retain(|s| s.1 >= 0.03);
-    stages.extend([("what takes less than 0.03".into(), small), ("total".into(), total)]);
-    let lines: Vec<Vec<String>> = stages.iter().map(|(stage, ms)| vec![stage.clone(), format!("{ms:.2}")]).collect();
+    stages.extend([
+        ("what takes less than 0.03".into(), small),
+        ("total".into(), total),
+    ]);
+    let lines: Vec<Vec<String>> = stages
+        .iter()
+        .map(|(stage, ms)| vec![stage.clone(), format!("{ms:.2}")])
+        .collect();
     let passes = record["passes"].as_array().unwrap().len();
     format!(
         "{said}\n\n{}\n{asleep} of {passes} passes sleep in all of these frames.\n",
@@ -148,12 +228,17 @@ fn moving() -> String {
 fn scenes() -> String {
     let record = record("scenes");
     let done = |experiment: &str| -> BTreeMap<String, &BTreeMap<String, String>> {
-        let lines = record.lines.iter().filter(|l| l["outcome"] == "done" && l["experiment"] == experiment);
+        let lines = record
+            .lines
+            .iter()
+            .filter(|l| l["outcome"] == "done" && l["experiment"] == experiment);
         lines.map(|l| (l["scene"].clone(), l)).collect()
     };
     let methods = ["rays", "cones", "thesis"].map(done);
     let mut names: Vec<&String> = methods[0].keys().collect();
-    names.sort_by(|a, b| number(methods[0][*b], "total flip").total_cmp(&number(methods[0][*a], "total flip")));
+    names.sort_by(|a, b| {
+        number(methods[0][*b], "total flip").total_cmp(&number(methods[0][*a], "total flip"))
+    });
     let columns: [(&str, usize); 5] = [
         ("total energy_ratio", 2),
         ("total flip", 3),
@@ -163,38 +248,81 @@ fn scenes() -> String {
     ];
     let line = |name: &&String| {
         let cell = |(column, digits): (&str, usize)| {
-            let of = methods.each_ref().map(|m| m.get(*name).map_or(f64::NAN, |l| number(l, column)));
+            let of = methods
+                .each_ref()
+                .map(|m| m.get(*name).map_or(f64::NAN, |l| number(l, column)));
             of.map(|x| format!("{x:.digits$}")).join(" / ")
         };
-        std::iter::once((*name).clone()).chain(columns.map(cell)).collect()
+        std::iter::once((*name).clone())
+            .chain(columns.map(cell))
+            .collect()
     };
     let lines: Vec<Vec<String>> = names.iter().map(line).collect();
-    let head = ["scene", "energy", "FLIP", "relMSE", "relMSE, one bounce", "ms"];
-    format!("*{}*\n\nEach cell: rays / cones / thesis.\n\n{}", record.said, table(&head, &lines))
+    let head = [
+        "scene",
+        "energy",
+        "FLIP",
+        "relMSE",
+        "relMSE, one bounce",
+        "ms",
+    ];
+    format!(
+        "*{}*\n\nEach cell: rays / cones / thesis.\n\n{}",
+        record.said,
+        table(&head, &lines)
+    )
 }
 
 /// The thesis in every scene with its preset, with the exposure and steps of the lowest FLIP, and the FLIP of the other presets.
 fn exposures() -> String {
     type Line = BTreeMap<String, String>;
     let (record, scenes) = (record("exposures"), record("scenes"));
-    let done: Vec<&Line> = record.lines.iter().filter(|l| l["outcome"] == "done").collect();
+    let done: Vec<&Line> = record
+        .lines
+        .iter()
+        .filter(|l| l["outcome"] == "done")
+        .collect();
     let mut names: Vec<&String> = done.iter().map(|l| &l["scene"]).collect();
     names.dedup();
     let line = |name: &String| {
         let all = || done.iter().copied().filter(|l| l["scene"] == *name);
-        let preset = all().find(|l| l["injection_exposure"] == "0" && l["diffuse_steps"] == "32").unwrap();
-        let best = |column: &str| all().min_by(|a, b| number(a, column).total_cmp(&number(b, column))).unwrap();
+        let preset = all()
+            .find(|l| l["injection_exposure"] == "0" && l["diffuse_steps"] == "32")
+            .unwrap();
+        let best = |column: &str| {
+            all()
+                .min_by(|a, b| number(a, column).total_cmp(&number(b, column)))
+                .unwrap()
+        };
         let other = |method: &str| {
-            let fits = |l: &&Line| l["experiment"] == method && l["scene"] == *name && l["outcome"] == "done";
-            scenes.lines.iter().find(fits).map_or(f64::NAN, |l| number(l, "total flip"))
+            let fits = |l: &&Line| {
+                l["experiment"] == method && l["scene"] == *name && l["outcome"] == "done"
+            };
+            scenes
+                .lines
+                .iter()
+                .find(fits)
+                .map_or(f64::NAN, |l| number(l, "total flip"))
         };
         let found = best("total flip");
-        let exposure = if found["injection_exposure"] == "0" { "preset" } else { &found["injection_exposure"] };
+        let exposure = if found["injection_exposure"] == "0" {
+            "preset"
+        } else {
+            &found["injection_exposure"]
+        };
         let (one, energy) = ("total, 1 bounces flip", "total energy_ratio");
         vec![
             name.clone(),
-            format!("{:.3} ({:.2})", number(preset, "total flip"), number(preset, energy)),
-            format!("{:.3} ({:.2})", number(found, "total flip"), number(found, energy)),
+            format!(
+                "{:.3} ({:.2})",
+                number(preset, "total flip"),
+                number(preset, energy)
+            ),
+            format!(
+                "{:.3} ({:.2})",
+                number(found, "total flip"),
+                number(found, energy)
+            ),
             format!("{exposure}, {}", found["diffuse_steps"]),
             format!("{:.3}, {:.3}", number(preset, one), number(best(one), one)),
             format!("{:.3}, {:.3}", other("rays"), other("cones")),
@@ -225,19 +353,32 @@ fn lamps() -> String {
     let line = |name: &String| {
         let of = |(pixel, voxel): (&str, &str)| {
             let fits = |l: &&BTreeMap<String, String>| {
-                l["scene"] == *name && l["emitter_rays"] == pixel && l["bounce_emitter_rays"] == voxel
+                l["scene"] == *name
+                    && l["emitter_rays"] == pixel
+                    && l["bounce_emitter_rays"] == voxel
             };
             record.lines.iter().find(fits).unwrap()
         };
         let cell = |(column, digits): (&str, usize)| {
-            settings.map(|s| format!("{:.digits$}", number(of(s), column))).join(", ")
+            settings
+                .map(|s| format!("{:.digits$}", number(of(s), column)))
+                .join(", ")
         };
-        let cells =
-            [("total median ms", 2), ("total relmse", 4), ("total flip", 3), ("total energy_ratio", 2)].map(cell);
+        let cells = [
+            ("total median ms", 2),
+            ("total relmse", 4),
+            ("total flip", 3),
+            ("total energy_ratio", 2),
+        ]
+        .map(cell);
         std::iter::once(name.clone()).chain(cells).collect()
     };
     let lines: Vec<Vec<String>> = names.iter().map(line).collect();
-    format!("*{}*\n\n{}", record.said, table(&["scene", "ms", "relMSE", "FLIP", "energy"], &lines))
+    format!(
+        "*{}*\n\n{}",
+        record.said,
+        table(&["scene", "ms", "relMSE", "FLIP", "energy"], &lines)
+    )
 }
 
 /// Voxels of Sponza against the exact test.
@@ -246,7 +387,9 @@ fn voxels() -> String {
     let mut lines = Vec::new();
     for mode in record["modes"].as_array().unwrap() {
         let score = &mode["score"];
-        let Some(recall) = score["recall"].as_f64() else { continue };
+        let Some(recall) = score["recall"].as_f64() else {
+            continue;
+        };
         let whole = |name: &str| score[name].as_u64().unwrap().to_string();
         lines.push(vec![
             mode["title"].as_str().unwrap().to_string(),
@@ -276,17 +419,35 @@ fn voxels() -> String {
 
 /// Defaults of the parameters that both methods have and declare differently, and what one has alone.
 fn presets() -> String {
-    let home = Workspace { root: root().to_path_buf(), cache: None };
-    let params = |graph: &str| load(&home.graph_path(graph), &home.folders()).unwrap().params.list;
+    let home = Workspace {
+        root: root().to_path_buf(),
+        cache: None,
+    };
+    let params = |graph: &str| {
+        load(&home.graph_path(graph), &home.folders())
+            .unwrap()
+            .params
+            .list
+    };
     let (ours, thesis) = (params("rays.ron"), params("thesis.ron"));
     let mut lines = Vec::new();
     for p in &ours {
-        if let Some(t) = thesis.iter().find(|t| t.name == p.name && t.default != p.default) {
-            lines.push(vec![format!("`{}`", p.name), p.default.to_string(), t.default.to_string()]);
+        if let Some(t) = thesis
+            .iter()
+            .find(|t| t.name == p.name && t.default != p.default)
+        {
+            lines.push(vec![
+                format!("`{}`", p.name),
+                p.default.to_string(),
+                t.default.to_string(),
+            ]);
         }
     }
     let alone = |a: &[conelab::graph::param::Param], b: &[conelab::graph::param::Param]| {
-        let names = a.iter().filter(|p| b.iter().all(|o| o.name != p.name)).map(|p| format!("`{}`", p.name));
+        let names = a
+            .iter()
+            .filter(|p| b.iter().all(|o| o.name != p.name))
+            .map(|p| format!("`{}`", p.name));
         names.collect::<Vec<_>>().join(", ")
     };
     format!(
@@ -311,12 +472,26 @@ fn block(name: &str) -> String {
 
 /// The share by which the default's light deviates in scenes with lamps of about a voxel, percent.
 fn lamps_off_by() -> (f64, f64) {
-    const LAMPS: [&str; 5] = ["small-quad", "ceiling-panel", "neon-tube", "lampshade", "emitters"];
+    const LAMPS: [&str; 5] = [
+        "small-quad",
+        "ceiling-panel",
+        "neon-tube",
+        "lampshade",
+        "emitters",
+    ];
     let record = record("scenes");
-    let default = record.lines.iter().filter(|l| l["experiment"] == "rays" && LAMPS.contains(&l["scene"].as_str()));
-    let off: Vec<f64> = default.map(|l| 100.0 * (number(l, "total energy_ratio") - 1.0)).collect();
+    let default = record
+        .lines
+        .iter()
+        .filter(|l| l["experiment"] == "rays" && LAMPS.contains(&l["scene"].as_str()));
+    let off: Vec<f64> = default
+        .map(|l| 100.0 * (number(l, "total energy_ratio") - 1.0))
+        .collect();
     assert_eq!(off.len(), LAMPS.len());
-    (off.iter().copied().fold(f64::INFINITY, f64::min), off.into_iter().fold(f64::NEG_INFINITY, f64::max))
+    (
+        off.iter().copied().fold(f64::INFINITY, f64::min),
+        off.into_iter().fold(f64::NEG_INFINITY, f64::max),
+    )
 }
 
 #[test]
@@ -326,7 +501,10 @@ fn figures_of_the_readme_are_those_recorded() {
     let bench = record("rays");
     let of = |name: &str| {
         let is = |l: &&BTreeMap<String, String>| {
-            l["experiment"] == "rays" && l["voxel_dim"] == "160" && l["name"] == name && l["kind"] != "pass"
+            l["experiment"] == "rays"
+                && l["voxel_dim"] == "160"
+                && l["name"] == name
+                && l["kind"] != "pass"
         };
         number(bench.lines.iter().find(is).unwrap(), "median ms")
     };
@@ -345,7 +523,10 @@ fn figures_of_the_readme_are_those_recorded() {
         format!("A frame takes {moving:.1} ms if only the camera moves"),
         format!("miss {missed:.1} % of the cells that triangles overlap in Sponza (128^3)"),
     ] {
-        assert!(text.contains(&figure), "README.md does not have '{figure}', which docs/recorded says");
+        assert!(
+            text.contains(&figure),
+            "README.md does not have '{figure}', which docs/recorded says"
+        );
     }
 }
 
@@ -361,7 +542,10 @@ fn tables_say_what_was_recorded() {
         if !skips {
             let _ = writeln!(out, "{line}");
         }
-        if let Some(name) = line.strip_prefix("<!-- recorded: ").and_then(|l| l.strip_suffix(" -->")) {
+        if let Some(name) = line
+            .strip_prefix("<!-- recorded: ")
+            .and_then(|l| l.strip_suffix(" -->"))
+        {
             let _ = write!(out, "\n{}\n", block(name));
             (skips, blocks) = (true, blocks + 1);
         }
@@ -371,6 +555,9 @@ fn tables_say_what_was_recorded() {
     if std::env::var_os("CONELAB_BLESS").is_some() {
         std::fs::write(&path, out).unwrap();
     } else {
-        assert!(out == text, "docs/results.md does not say what docs/recorded holds: CONELAB_BLESS=1 writes it anew");
+        assert!(
+            out == text,
+            "docs/results.md does not say what docs/recorded holds: CONELAB_BLESS=1 writes it anew"
+        );
     }
 }

@@ -31,13 +31,25 @@ type Expected = Box<dyn Fn(DVec2) -> DVec3>;
 /// Texels of 4 x 4, from the top: no two are alike, and most are far apart.
 fn texels() -> Vec<[u8; 4]> {
     (0..16u32)
-        .map(|i| [(i * 67 + 30) % 256, (i * 149 + 200) % 256, (i * 211 + 90) % 256, 255].map(|v| v as u8))
+        .map(|i| {
+            [
+                (i * 67 + 30) % 256,
+                (i * 149 + 200) % 256,
+                (i * 211 + 90) % 256,
+                255,
+            ]
+            .map(|v| v as u8)
+        })
         .collect()
 }
 
 fn linear(byte: u8) -> f64 {
     let c = f64::from(byte) / 255.0;
-    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+    if c <= 0.04045 {
+        c / 12.92
+    } else {
+        ((c + 0.055) / 1.055).powf(2.4)
+    }
 }
 
 /// A texel beyond the picture (Vulkan 1.3, 16.8 Wrapping Operation).
@@ -81,13 +93,26 @@ struct Squares {
 
 impl Squares {
     fn texture(&mut self, wrap: [u32; 2], filter: u32) -> usize {
-        self.model.texture(4, 4, &texels(), json!({ "wrapS": wrap[0], "wrapT": wrap[1], "magFilter": filter }))
+        self.model.texture(
+            4,
+            4,
+            &texels(),
+            json!({ "wrapS": wrap[0], "wrapT": wrap[1], "magFilter": filter }),
+        )
     }
 
     /// Adds a square with more attributes. Its second set of coordinates is half of the first.
     fn add(&mut self, material: Value, more: Value, expected: impl Fn(DVec2) -> DVec3 + 'static) {
         let m = &mut self.model;
-        let corners = [[-1., -1.], [1., -1.], [1., 1.], [-1., -1.], [1., 1.], [-1., 1.]].map(|[x, y]| DVec2::new(x, y));
+        let corners = [
+            [-1., -1.],
+            [1., -1.],
+            [1., 1.],
+            [-1., -1.],
+            [1., 1.],
+            [-1., 1.],
+        ]
+        .map(|[x, y]| DVec2::new(x, y));
         let uv = |scale: f64| corners.map(|c| (coordinates(c) * scale).as_vec2().to_array());
         let number = self.expected.len();
         let (column, row) = (number % COLUMNS, number / COLUMNS);
@@ -97,7 +122,10 @@ impl Squares {
             "TEXCOORD_0": m.floats(&uv(1.0)),
             "TEXCOORD_1": m.floats(&uv(0.5)),
         });
-        attributes.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        attributes
+            .as_object_mut()
+            .unwrap()
+            .extend(more.as_object().unwrap().clone());
         let material = m.material(material);
         let mesh = m.mesh(attributes, Some(material));
         m.node(json!({ "mesh": mesh, "translation": [2 * column, 2 * row, 0] }));
@@ -105,8 +133,21 @@ impl Squares {
     }
 
     /// COLOR_0 by corner.
-    fn colors(&mut self, component: u32, channels: usize, color: impl Fn(DVec2) -> [f64; 4]) -> Value {
-        let corners = [[-1., -1.], [1., -1.], [1., 1.], [-1., -1.], [1., 1.], [-1., 1.]].map(|[x, y]| DVec2::new(x, y));
+    fn colors(
+        &mut self,
+        component: u32,
+        channels: usize,
+        color: impl Fn(DVec2) -> [f64; 4],
+    ) -> Value {
+        let corners = [
+            [-1., -1.],
+            [1., -1.],
+            [1., 1.],
+            [-1., -1.],
+            [1., 1.],
+            [-1., 1.],
+        ]
+        .map(|[x, y]| DVec2::new(x, y));
         let mut bytes = Vec::new();
         for value in corners.iter().flat_map(|c| color(*c)[..channels].to_vec()) {
             match component {
@@ -132,7 +173,12 @@ fn matte(pbr: Value) -> Value {
 
 /// A colour that changes evenly over a square, and so over both of its triangles.
 fn even(at: DVec2) -> [f64; 4] {
-    [0.5 + 0.4 * at.x, 0.5 - 0.3 * at.y, 0.3 + 0.1 * at.x + 0.1 * at.y, 0.5 + 0.5 * at.x]
+    [
+        0.5 + 0.4 * at.x,
+        0.5 - 0.3 * at.y,
+        0.3 + 0.1 * at.x + 0.1 * at.y,
+        0.5 + 0.5 * at.x,
+    ]
 }
 
 fn color_of(at: DVec2) -> DVec3 {
@@ -140,54 +186,95 @@ fn color_of(at: DVec2) -> DVec3 {
 }
 
 fn squares() -> Squares {
-    let mut s = Squares { model: Model::new(), expected: Vec::new() };
+    let mut s = Squares {
+        model: Model::new(),
+        expected: Vec::new(),
+    };
     for u in [REPEAT, CLAMP, MIRROR] {
         for v in [REPEAT, CLAMP, MIRROR] {
             let texture = s.texture([u, v], LINEAR);
             let material = unlit(json!({ "baseColorTexture": { "index": texture } }));
-            s.add(material, json!({}), move |at| looked_up(coordinates(at), [u, v], LINEAR));
+            s.add(material, json!({}), move |at| {
+                looked_up(coordinates(at), [u, v], LINEAR)
+            });
         }
     }
     for wrap in [[REPEAT, REPEAT], [MIRROR, CLAMP]] {
         let texture = s.texture(wrap, NEAREST);
         let material = unlit(json!({ "baseColorTexture": { "index": texture } }));
-        s.add(material, json!({}), move |at| looked_up(coordinates(at), wrap, NEAREST));
+        s.add(material, json!({}), move |at| {
+            looked_up(coordinates(at), wrap, NEAREST)
+        });
     }
     // Unlit and lit colours of vertices, of every type.
     let colors = s.colors(common::model_file::FLOAT, 3, even);
-    s.add(unlit(json!({ "baseColorFactor": [0.8, 1, 1, 1] })), colors, |at| color_of(at) * DVec3::new(0.8, 1.0, 1.0));
+    s.add(
+        unlit(json!({ "baseColorFactor": [0.8, 1, 1, 1] })),
+        colors,
+        |at| color_of(at) * DVec3::new(0.8, 1.0, 1.0),
+    );
     let colors = s.colors(U8, 4, even);
-    s.add(matte(json!({ "metallicFactor": 0, "baseColorFactor": [1, 0.5, 1, 1] })), colors, |at| {
-        color_of(at) * DVec3::new(1.0, 0.5, 1.0)
-    });
+    s.add(
+        matte(json!({ "metallicFactor": 0, "baseColorFactor": [1, 0.5, 1, 1] })),
+        colors,
+        |at| color_of(at) * DVec3::new(1.0, 0.5, 1.0),
+    );
     let (colors, texture) = (s.colors(U16, 4, even), s.texture([CLAMP, REPEAT], NEAREST));
     let pbr = json!({ "metallicFactor": 0, "baseColorTexture": { "index": texture } });
-    s.add(matte(pbr), colors, |at| color_of(at) * looked_up(coordinates(at), [CLAMP, REPEAT], NEAREST));
+    s.add(matte(pbr), colors, |at| {
+        color_of(at) * looked_up(coordinates(at), [CLAMP, REPEAT], NEAREST)
+    });
     let colors = s.colors(U16, 3, even);
     s.add(unlit(json!({})), colors, color_of);
     // The second set, alone with a transform, and next to the first.
     let texture = s.texture([CLAMP, MIRROR], LINEAR);
     let transform = json!({ "KHR_texture_transform": { "scale": [2, 4], "offset": [0.25, -0.5] } });
     let reference = json!({ "index": texture, "texCoord": 1, "extensions": transform });
-    s.add(unlit(json!({ "baseColorTexture": reference })), json!({}), |at| {
-        looked_up(coordinates(at) * DVec2::new(1.0, 2.0) + DVec2::new(0.25, -0.5), [CLAMP, MIRROR], LINEAR)
-    });
-    let (base, glow) = (s.texture([REPEAT, REPEAT], LINEAR), s.texture([REPEAT, CLAMP], LINEAR));
-    let mut material =
-        matte(json!({ "baseColorFactor": [0, 0, 0, 1], "baseColorTexture": { "index": base }, "metallicFactor": 0 }));
+    s.add(
+        unlit(json!({ "baseColorTexture": reference })),
+        json!({}),
+        |at| {
+            looked_up(
+                coordinates(at) * DVec2::new(1.0, 2.0) + DVec2::new(0.25, -0.5),
+                [CLAMP, MIRROR],
+                LINEAR,
+            )
+        },
+    );
+    let (base, glow) = (
+        s.texture([REPEAT, REPEAT], LINEAR),
+        s.texture([REPEAT, CLAMP], LINEAR),
+    );
+    let mut material = matte(
+        json!({ "baseColorFactor": [0, 0, 0, 1], "baseColorTexture": { "index": base }, "metallicFactor": 0 }),
+    );
     material["emissiveFactor"] = json!([1, 1, 1]);
     material["emissiveTexture"] = json!({ "index": glow, "texCoord": 1 });
-    s.add(material, json!({}), |at| looked_up(coordinates(at) * 0.5, [REPEAT, CLAMP], LINEAR));
-    let (base, glow) = (s.texture([REPEAT, REPEAT], LINEAR), s.texture([MIRROR, MIRROR], LINEAR));
-    let mut material = matte(json!({ "metallicFactor": 0, "baseColorTexture": { "index": base, "texCoord": 1 } }));
+    s.add(material, json!({}), |at| {
+        looked_up(coordinates(at) * 0.5, [REPEAT, CLAMP], LINEAR)
+    });
+    let (base, glow) = (
+        s.texture([REPEAT, REPEAT], LINEAR),
+        s.texture([MIRROR, MIRROR], LINEAR),
+    );
+    let mut material =
+        matte(json!({ "metallicFactor": 0, "baseColorTexture": { "index": base, "texCoord": 1 } }));
     material["emissiveFactor"] = json!([0, 0, 0]);
     material["emissiveTexture"] = json!({ "index": glow });
-    s.add(material, json!({}), |at| looked_up(coordinates(at) * 0.5, [REPEAT, REPEAT], LINEAR));
+    s.add(material, json!({}), |at| {
+        looked_up(coordinates(at) * 0.5, [REPEAT, REPEAT], LINEAR)
+    });
     // A mask by the alpha of vertices: half of it is there.
     let colors = s.colors(U8, 4, even);
     let mut masked = unlit(json!({}));
     masked["alphaMode"] = json!("MASK");
-    s.add(masked, colors, |at| if at.x < 0.0 { DVec3::ZERO } else { color_of(at) });
+    s.add(masked, colors, |at| {
+        if at.x < 0.0 {
+            DVec3::ZERO
+        } else {
+            color_of(at)
+        }
+    });
     s
 }
 
@@ -213,7 +300,11 @@ fn sun() -> Light {
 
 /// Squares and pixels meet: the picture holds all squares and nothing else.
 fn viewed(settings: &[(&str, &str)]) -> Experiment {
-    let mut e = experiment("cornell", ((CELL * COLUMNS) as u32, (CELL * ROWS) as u32), settings);
+    let mut e = experiment(
+        "cornell",
+        ((CELL * COLUMNS) as u32, (CELL * ROWS) as u32),
+        settings,
+    );
     let (x, y) = (COLUMNS as f32 - 1.0, ROWS as f32 - 1.0);
     let fov = 10.0f32;
     let far = ROWS as f32 / (0.5 * fov).to_radians().tan();
@@ -248,18 +339,29 @@ fn seen(scene: &Scene, how: &How) -> Vec<[f32; 3]> {
             assert_clean(&lab);
             let [all, diffuse, specular] = wanted.map(|w| floats(&mut session, &w, 0));
             let mut rest = diffuse.iter().zip(&specular);
-            let emitted = all.iter().map(|t| rest.next().map(|(d, s)| [0, 1, 2].map(|i| t[i] - d[i] - s[i])).unwrap());
+            let emitted = all.iter().map(|t| {
+                rest.next()
+                    .map(|(d, s)| [0, 1, 2].map(|i| t[i] - d[i] - s[i]))
+                    .unwrap()
+            });
             emitted.collect()
         }
         How::Reference => {
             let home = home();
             let lab = lab(home.path());
             let goal = Goal::Samples(16);
-            let found = gather(&lab, &viewed(&[]), &scene, 1, goal, &mut |_| ControlFlow::Continue(())).unwrap();
+            let found = gather(&lab, &viewed(&[]), &scene, 1, goal, &mut |_| {
+                ControlFlow::Continue(())
+            })
+            .unwrap();
             assert_clean(&lab);
-            let [all, diffuse, specular] = ["total", "diffuse", "specular"].map(|part| &found.parts[part].mean.rgb);
+            let [all, diffuse, specular] =
+                ["total", "diffuse", "specular"].map(|part| &found.parts[part].mean.rgb);
             let rest = diffuse.iter().zip(specular);
-            all.iter().zip(rest).map(|(t, (d, s))| [0, 1, 2].map(|i| t[i] - d[i] - s[i])).collect()
+            all.iter()
+                .zip(rest)
+                .map(|(t, (d, s))| [0, 1, 2].map(|i| t[i] - d[i] - s[i]))
+                .collect()
         }
     }
 }
@@ -283,14 +385,18 @@ fn every_pixel_of_a_texture_or_colour_is_what_the_specification_says() {
                     let at = (DVec2::new(x as f64, y as f64) + 0.5) / CELL as f64 * 2.0 - 1.0;
                     let wanted = expected(DVec2::new(at.x, -at.y));
                     let found = picture[(row * CELL + y) * CELL * COLUMNS + column * CELL + x];
-                    let off = (DVec3::from(found.map(f64::from)) - wanted).abs().max_element();
+                    let off = (DVec3::from(found.map(f64::from)) - wanted)
+                        .abs()
+                        .max_element();
                     if off > worst {
                         (worst, place) = (off, (x, y));
                     }
                 }
                 println!("{name}, square {number}: {worst:.4}");
                 if worst > 0.012 {
-                    wrong.push(format!("{name}, square {number}: off by {worst:.3} at {place:?}"));
+                    wrong.push(format!(
+                        "{name}, square {number}: off by {worst:.3} at {place:?}"
+                    ));
                 }
             }
         }
@@ -312,10 +418,18 @@ fn under_a_coloured_lamp(colors: [Vec4; 2], floor: f32) -> Scene {
             name: "square".into(),
             vertices: vec![at(0.0, 0.0), at(0.0, 1.0), at(1.0, 1.0), at(1.0, 0.0)],
             indices: vec![0, 1, 2, 0, 2, 3],
-            submeshes: vec![Submesh { first_index: 0, index_count: 6, material }],
+            submeshes: vec![Submesh {
+                first_index: 0,
+                index_count: 6,
+                material,
+            }],
         }
     };
-    let grey = Material { base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), specular: 0.0, ..Material::default() };
+    let grey = Material {
+        base_color: Vec4::new(0.5, 0.5, 0.5, 1.0),
+        specular: 0.0,
+        ..Material::default()
+    };
     let lamp = Material {
         emission: Vec3::splat(7.0),
         base_color: Vec4::W,
@@ -341,8 +455,10 @@ fn under_a_coloured_lamp(colors: [Vec4; 2], floor: f32) -> Scene {
 const TINT: Vec4 = Vec4::new(0.8, 0.4, 0.1, 1.0);
 
 /// From one side to the other it grows from 0 to twice the tint's half; over the middle the mean is the half.
-const LAMPS: [(&str, [Vec4; 2], f64); 2] =
-    [("even", [TINT, TINT], 1.0), ("growing", [Vec4::new(0.0, 0.0, 0.0, 1.0), TINT], 0.5)];
+const LAMPS: [(&str, [Vec4; 2], f64); 2] = [
+    ("even", [TINT, TINT], 1.0),
+    ("growing", [Vec4::new(0.0, 0.0, 0.0, 1.0), TINT], 0.5),
+];
 
 #[test]
 fn coloured_lamps_light_the_floor_by_their_form_factor() {
@@ -353,16 +469,24 @@ fn coloured_lamps_light_the_floor_by_their_form_factor() {
         let home = home();
         let lab = lab(home.path());
         let mut look = experiment("lamp", (16, 12), &[]);
-        look.camera = CameraChoice::Placed(PlacedCamera::new((0.0, 0.3, 0.3), (0.0, 0.0, 0.0), 1.0));
+        look.camera =
+            CameraChoice::Placed(PlacedCamera::new((0.0, 0.3, 0.3), (0.0, 0.0, 0.0), 1.0));
         let scene = Arc::new(under_a_coloured_lamp(colors, 200.0));
-        let found = gather(&lab, &look, &scene, 1, Goal::Samples(256), &mut |_| ControlFlow::Continue(())).unwrap();
+        let found = gather(&lab, &look, &scene, 1, Goal::Samples(256), &mut |_| {
+            ControlFlow::Continue(())
+        })
+        .unwrap();
         assert_clean(&lab);
         let texels = &found.parts["diffuse"].mean.rgb;
         for channel in 0..3 {
-            let mean = texels.iter().map(|t| f64::from(t[channel])).sum::<f64>() / texels.len() as f64;
+            let mean =
+                texels.iter().map(|t| f64::from(t[channel])).sum::<f64>() / texels.len() as f64;
             let expected = 0.5 * 7.0 * f64::from(TINT[channel]) * share * form;
             println!("{name}, channel {channel}: {mean:.5}, expected {expected:.5}");
-            assert!((mean / expected - 1.0).abs() < 0.02, "{name}, channel {channel}: {mean}, not {expected}");
+            assert!(
+                (mean / expected - 1.0).abs() < 0.02,
+                "{name}, channel {channel}: {mean}, not {expected}"
+            );
         }
     }
 }
@@ -373,9 +497,16 @@ fn voxels_have_the_colours_of_vertices() {
         let scene = Arc::new(under_a_coloured_lamp(colors, 4.0));
         for voxelizer in ["compute", "raster", "tessellated"] {
             let lab = lab(root());
-            let mut e = experiment("lamp", (16, 12), &[("voxelizer", voxelizer), ("voxel_dim", "32")]);
-            e.camera = CameraChoice::Placed(PlacedCamera::new((0.0, 0.3, 0.3), (0.0, 0.0, 0.0), 20.0));
-            let (mut session, _) = lab.prepare(&e, scene.clone(), |_| Ok(vec!["diffuseIndirect".into()])).unwrap();
+            let mut e = experiment(
+                "lamp",
+                (16, 12),
+                &[("voxelizer", voxelizer), ("voxel_dim", "32")],
+            );
+            e.camera =
+                CameraChoice::Placed(PlacedCamera::new((0.0, 0.3, 0.3), (0.0, 0.0, 0.0), 20.0));
+            let (mut session, _) = lab
+                .prepare(&e, scene.clone(), |_| Ok(vec!["diffuseIndirect".into()]))
+                .unwrap();
             for _ in 0..16 {
                 session.frame(0.0).unwrap();
             }
@@ -386,7 +517,10 @@ fn voxels_have_the_colours_of_vertices() {
             // Grey floor: the light has the tint of the lamp.
             let (found, expected) = (sum / sum.x, TINT.truncate() / TINT.x);
             println!("{name}, {voxelizer}: {found:.3}, expected {expected:.3}");
-            assert!(sum.x > 0.0 && found.distance(expected) < 0.02, "{name}, {voxelizer}: {found}, not {expected}");
+            assert!(
+                sum.x > 0.0 && found.distance(expected) < 0.02,
+                "{name}, {voxelizer}: {found}, not {expected}"
+            );
         }
     }
 }

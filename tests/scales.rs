@@ -16,7 +16,9 @@ use std::sync::Arc;
 #[track_caller]
 fn frame(lab: &Lab, experiment: &Experiment, scene: &Arc<Scene>, wanted: &[&str]) -> Session {
     let wanted = wanted.iter().map(|w| (*w).to_string()).collect();
-    let (mut session, _) = lab.prepare(experiment, scene.clone(), |_| Ok(wanted)).unwrap();
+    let (mut session, _) = lab
+        .prepare(experiment, scene.clone(), |_| Ok(wanted))
+        .unwrap();
     session.frame(0.0).unwrap();
     session.finish().unwrap();
     assert_clean(lab);
@@ -33,11 +35,23 @@ fn placed(scene: &Scene, offset: Vec3, scale: f32) -> Arc<Scene> {
     for light in &mut scene.lights {
         assert!(!matches!(light.kind, LightKind::Point));
         light.position = place.transform_point3(light.position);
-        light.color *= if light.kind == LightKind::Directional { 1.0 } else { scale * scale };
+        light.color *= if light.kind == LightKind::Directional {
+            1.0
+        } else {
+            scale * scale
+        };
     }
     for camera in scene.cameras.values_mut() {
-        let (eye, target) = (place.transform_point3(camera.eye), place.transform_point3(camera.target));
-        *camera = Camera { eye, target, near: camera.near * scale, ..*camera };
+        let (eye, target) = (
+            place.transform_point3(camera.eye),
+            place.transform_point3(camera.target),
+        );
+        *camera = Camera {
+            eye,
+            target,
+            near: camera.near * scale,
+            ..*camera
+        };
     }
     Arc::new(scene)
 }
@@ -52,11 +66,17 @@ fn distances(scene: &Scene, (width, height): (u32, u32), below: f64) -> Vec<f64>
     let tan = (0.5 * f64::from(camera.fov_y)).to_radians().tan();
     let triangles = world(scene);
     let rays = (0..width * height).map(|i| {
-        let x = (2.0 * (f64::from(i % width) + 0.5) / f64::from(width) - 1.0) * f64::from(width) / f64::from(height);
+        let x = (2.0 * (f64::from(i % width) + 0.5) / f64::from(width) - 1.0) * f64::from(width)
+            / f64::from(height);
         let y = 1.0 - 2.0 * (f64::from(i / width) + 0.5 + below) / f64::from(height);
         ahead + (right * x + up * y) * tan // 1 along the view direction
     });
-    let met = |d: DVec3| triangles.iter().filter_map(|t| meets(eye, d, *t)).fold(f64::INFINITY, f64::min);
+    let met = |d: DVec3| {
+        triangles
+            .iter()
+            .filter_map(|t| meets(eye, d, *t))
+            .fold(f64::INFINITY, f64::min)
+    };
     rays.map(met).collect()
 }
 
@@ -68,20 +88,29 @@ fn depth_is_right_from_millimetres_to_hundreds_of_kilometres() {
         let scene = scene(name);
         let near = f64::from(scene.cameras["default"].near);
         // A rasteriser moves what it draws by up to 1/256 of a pixel, which near a horizon is far.
-        let [expected, above, below] = [0.0, -1.0 / 128.0, 1.0 / 128.0].map(|shift| distances(&scene, SIZE, shift));
+        let [expected, above, below] =
+            [0.0, -1.0 / 128.0, 1.0 / 128.0].map(|shift| distances(&scene, SIZE, shift));
         let seen = expected.iter().filter(|e| e.is_finite()).count();
         for (drawn_by, depth) in [("raster", "depth"), ("compute", "visibleDepth")] {
             let settings = [("voxel_dim", "32"), ("gbuffer", drawn_by)];
             let mut session = frame(&lab, &experiment(name, SIZE, &settings), &scene, &[depth]);
-            let found = floats(&mut session, depth, 0).into_iter().map(|d| near / f64::from(d[0]));
+            let found = floats(&mut session, depth, 0)
+                .into_iter()
+                .map(|d| near / f64::from(d[0]));
             let is_right = |i: usize, f: f64| {
                 let (least, most) = (above[i].min(below[i]), above[i].max(below[i]));
                 f == expected[i] || f > 0.999 * least && f < 1.001 * most
             };
             // At the edges of surfaces either is right.
             let wrong = found.enumerate().filter(|(i, f)| !is_right(*i, *f)).count();
-            println!("{name}, {drawn_by}: {wrong} of {} pixels are off, {seen} see a surface", expected.len());
-            assert!(wrong * 200 <= expected.len() && seen * 4 > expected.len(), "{name}, {drawn_by}: {wrong}, {seen}");
+            println!(
+                "{name}, {drawn_by}: {wrong} of {} pixels are off, {seen} see a surface",
+                expected.len()
+            );
+            assert!(
+                wrong * 200 <= expected.len() && seen * 4 > expected.len(),
+                "{name}, {drawn_by}: {wrong}, {seen}"
+            );
         }
     }
 }
@@ -90,9 +119,14 @@ fn depth_is_right_from_millimetres_to_hundreds_of_kilometres() {
 #[track_caller]
 fn assert_alike(name: &str, changed: &Arc<Scene>) {
     let lab = lab(root());
-    let experiment = experiment(name, (120, 68), &[("voxel_dim", "64"), ("shadow_dim", "1024")]);
+    let experiment = experiment(
+        name,
+        (120, 68),
+        &[("voxel_dim", "64"), ("shadow_dim", "1024")],
+    );
     let parts = ["direct", "diffuseIndirect", "specularIndirect", "radiance"];
-    let mut sessions = [scene(name), changed.clone()].map(|scene| frame(&lab, &experiment, &scene, &parts));
+    let mut sessions =
+        [scene(name), changed.clone()].map(|scene| frame(&lab, &experiment, &scene, &parts));
     for part in parts {
         let [a, b] = sessions.each_mut().map(|s| floats(s, part, 0));
         let (one, other) = (mean(&a), mean(&b));
@@ -101,9 +135,18 @@ fn assert_alike(name: &str, changed: &Arc<Scene>) {
             (a - b).abs() > 0.1 * a.max(b) + 0.01 * one as f32
         };
         let differ = a.iter().zip(&b).filter(far).count();
-        println!("{name}, {part}: {one:.5} and {other:.5}, {differ} of {} pixels differ", a.len());
-        assert!((one / other - 1.0).abs() < 0.02, "{name}, {part}: {one} is not {other}");
-        assert!(differ * 20 < a.len(), "{name}, {part}: {differ} pixels differ");
+        println!(
+            "{name}, {part}: {one:.5} and {other:.5}, {differ} of {} pixels differ",
+            a.len()
+        );
+        assert!(
+            (one / other - 1.0).abs() < 0.02,
+            "{name}, {part}: {one} is not {other}"
+        );
+        assert!(
+            differ * 20 < a.len(),
+            "{name}, {part}: {differ} pixels differ"
+        );
     }
 }
 
@@ -114,7 +157,10 @@ fn a_room_of_millimetres_looks_as_one_of_metres() {
 
 #[test]
 fn a_room_far_from_the_origin_looks_as_one_at_it() {
-    assert_alike("far-away", &placed(&scene("far-away"), Vec3::new(-80_000.0, 0.0, 60_000.0), 1.0));
+    assert_alike(
+        "far-away",
+        &placed(&scene("far-away"), Vec3::new(-80_000.0, 0.0, 60_000.0), 1.0),
+    );
 }
 
 /// One map over 200 km has texels of 50 m, in which a house casts no shadow.
@@ -123,14 +169,35 @@ fn what_is_small_in_a_huge_scene_casts_its_shadow() {
     let home = common::home();
     let lab = lab(home.path());
     for (name, least) in [("plain", 0.03), ("huge-ground", 0.0)] {
-        let with = |maps: &str| experiment(name, (120, 68), &[("shadow_maps", maps), ("voxel_dim", "32")]);
+        let with = |maps: &str| {
+            experiment(
+                name,
+                (120, 68),
+                &[("shadow_maps", maps), ("voxel_dim", "32")],
+            )
+        };
         let keep_on = &mut |_| ControlFlow::Continue(());
-        let truth = gather(&lab, &with("0"), &scene(name), 1, Goal::Samples(32), keep_on).unwrap();
+        let truth = gather(
+            &lab,
+            &with("0"),
+            &scene(name),
+            1,
+            Goal::Samples(32),
+            keep_on,
+        )
+        .unwrap();
         let truth = &truth.parts["direct"].mean.rgb;
         let wrong = |maps: &str| {
-            let found = floats(&mut frame(&lab, &with(maps), &scene(name), &["direct"]), "direct", 0);
+            let found = floats(
+                &mut frame(&lab, &with(maps), &scene(name), &["direct"]),
+                "direct",
+                0,
+            );
             // Where all of a pixel is lit or in shadow, and a lamp of one direction leaves no noise.
-            let differ = found.iter().zip(truth).filter(|(f, t)| (f[1] - t[1]).abs() > 0.2 * f[1].max(t[1]) + 0.02);
+            let differ = found
+                .iter()
+                .zip(truth)
+                .filter(|(f, t)| (f[1] - t[1]).abs() > 0.2 * f[1].max(t[1]) + 0.02);
             differ.count() as f64 / truth.len() as f64
         };
         let (one, nested) = (wrong("1"), wrong("0"));
@@ -139,7 +206,10 @@ fn what_is_small_in_a_huge_scene_casts_its_shadow() {
             100.0 * nested,
             100.0 * one
         );
-        assert!(nested < 0.01 && one >= least, "{name}: {nested}, with one map {one}");
+        assert!(
+            nested < 0.01 && one >= least,
+            "{name}: {nested}, with one map {one}"
+        );
     }
     assert_clean(&lab);
 }
@@ -151,14 +221,23 @@ fn shadow_maps_move_by_whole_texels() {
     let scene = scene("plain");
     let dim = 512;
     let params = [("shadow_dim", "512"), ("voxel_dim", "32")];
-    let mut session = frame(&lab, &experiment("plain", (64, 36), &params), &scene, &["shadowLayers"]);
+    let mut session = frame(
+        &lab,
+        &experiment("plain", (64, 36), &params),
+        &scene,
+        &["shadowLayers"],
+    );
     let camera = &scene.cameras["default"];
     let mut layers = |by: Vec3| -> Vec<Vec<f32>> {
-        let (eye, target) = ((camera.eye + by).to_array(), (camera.target + by).to_array());
+        let (eye, target) = (
+            (camera.eye + by).to_array(),
+            (camera.target + by).to_array(),
+        );
         session.place_camera(&PlacedCamera::new(eye.into(), target.into(), camera.fov_y));
         session.frame(0.0).unwrap();
         session.finish().unwrap();
-        let words: Vec<f32> = bytemuck::pod_collect_to_vec(&session.buffer("shadowLayers").unwrap());
+        let words: Vec<f32> =
+            bytemuck::pod_collect_to_vec(&session.buffer("shadowLayers").unwrap());
         words.chunks(24).map(<[f32]>::to_vec).collect()
     };
     let first = layers(Vec3::ZERO);
@@ -170,7 +249,10 @@ fn shadow_maps_move_by_whole_texels() {
             // The matrix's last column: x and y in half widths of the map.
             for row in [12, 13] {
                 let texels = (b[row] - a[row]) * 0.5 * dim as f32;
-                assert!((texels - texels.round()).abs() < 0.01, "map {k} moved by {texels} texels");
+                assert!(
+                    (texels - texels.round()).abs() < 0.01,
+                    "map {k} moved by {texels} texels"
+                );
                 moved[k] += texels.round().abs() as i32;
             }
         }
@@ -184,9 +266,10 @@ fn shadow_maps_move_by_whole_texels() {
 fn paths_see_what_is_small_or_far_away_too() {
     let home = common::home();
     let lab = lab(home.path());
-    for (name, offset, scale) in
-        [("pocket", Vec3::ZERO, 1000.0), ("far-away", Vec3::new(-80_000.0, 0.0, 60_000.0), 1.0)]
-    {
+    for (name, offset, scale) in [
+        ("pocket", Vec3::ZERO, 1000.0),
+        ("far-away", Vec3::new(-80_000.0, 0.0, 60_000.0), 1.0),
+    ] {
         let own = scene(name);
         let other = placed(&own, offset, scale);
         let experiment = experiment(name, (48, 27), &[]);
@@ -206,18 +289,36 @@ fn paths_see_what_is_small_or_far_away_too() {
 /// The room of `emitters` with lamps of one kind and size alone.
 fn lamps(mesh: &Mesh, size: f32) -> Arc<Scene> {
     let mut scene = Scene::clone(&scene("emitters"));
-    scene.instances.retain(|i| scene.meshes[i.mesh as usize].name == "room");
-    let glowing = scene.materials.iter().position(|m| m.emission != Vec3::ZERO).unwrap() as u32;
-    let submeshes = vec![Submesh { material: glowing, ..mesh.submeshes[0] }];
-    scene.meshes.push(Mesh { submeshes, ..mesh.clone() });
+    scene
+        .instances
+        .retain(|i| scene.meshes[i.mesh as usize].name == "room");
+    let glowing = scene
+        .materials
+        .iter()
+        .position(|m| m.emission != Vec3::ZERO)
+        .unwrap() as u32;
+    let submeshes = vec![Submesh {
+        material: glowing,
+        ..mesh.submeshes[0]
+    }];
+    scene.meshes.push(Mesh {
+        submeshes,
+        ..mesh.clone()
+    });
     let mesh = scene.meshes.len() as u32 - 1;
     scene.instances.extend((0..24).map(|i| {
         // Spread evenly (Roberts 2018, R3), each turned another way.
-        let [x, y, z] = [0.819_172_5, 0.671_043_6, 0.549_700_5].map(|step: f32| (step * i as f32).fract());
+        let [x, y, z] =
+            [0.819_172_5, 0.671_043_6, 0.549_700_5].map(|step: f32| (step * i as f32).fract());
         let turn = Quat::from_euler(EulerRot::XYZ, 7.0 * x, 7.0 * y, 7.0 * z);
         let place = Vec3::new(-2.0 + 4.0 * x, 0.5 + 1.8 * y, -2.0 + 3.0 * z);
         let transform = Mat4::from_scale_rotation_translation(Vec3::splat(size), turn, place);
-        Instance { name: format!("lamp {i}"), mesh, transform, mover: None }
+        Instance {
+            name: format!("lamp {i}"),
+            mesh,
+            transform,
+            mover: None,
+        }
     }));
     Arc::new(scene)
 }
@@ -230,26 +331,64 @@ fn small_lamps_shine_as_bright_as_they_are() {
     const CELL: f32 = 5.4 / 59.0; // of 64 across the scene, five of them beside it
     let ball = cube(3, 1.0);
     let leaf = {
-        let at = |x: f32, y: f32| Vertex { position: [x, y, 0.0], normal: [0.0, 0.0, 1.0], ..Vertex::default() };
+        let at = |x: f32, y: f32| Vertex {
+            position: [x, y, 0.0],
+            normal: [0.0, 0.0, 1.0],
+            ..Vertex::default()
+        };
         let vertices = vec![at(-0.5, -0.5), at(0.5, -0.5), at(0.5, 0.5), at(-0.5, 0.5)];
-        Mesh { vertices, indices: vec![0, 1, 2, 0, 2, 3], ..ball.clone() }
+        Mesh {
+            vertices,
+            indices: vec![0, 1, 2, 0, 2, 3],
+            ..ball.clone()
+        }
     };
-    let leaf = Mesh { submeshes: vec![Submesh { first_index: 0, index_count: 6, material: 0 }], ..leaf };
+    let leaf = Mesh {
+        submeshes: vec![Submesh {
+            first_index: 0,
+            index_count: 6,
+            material: 0,
+        }],
+        ..leaf
+    };
     for (name, mesh, across) in [("balls", &ball, 1.4), ("leaves", &leaf, 1.0)] {
         for cells in [0.7, 1.5, 3.0] {
             let scene = lamps(mesh, cells * CELL / across);
             let experiment = |voxelizer| {
-                let settings = [("voxel_dim", "64"), ("bounces", "one"), ("gather_frames", "1"), ("pixel_rays", "32")];
-                experiment("emitters", (64, 36), &[&settings[..], &[("voxelizer", voxelizer)]].concat())
+                let settings = [
+                    ("voxel_dim", "64"),
+                    ("bounces", "one"),
+                    ("gather_frames", "1"),
+                    ("pixel_rays", "32"),
+                ];
+                experiment(
+                    "emitters",
+                    (64, 36),
+                    &[&settings[..], &[("voxelizer", voxelizer)]].concat(),
+                )
             };
             let keep_on = &mut |_| ControlFlow::Continue(());
-            let truth = gather(&lab, &experiment("compute"), &scene, 1, Goal::Samples(256), keep_on).unwrap();
+            let truth = gather(
+                &lab,
+                &experiment("compute"),
+                &scene,
+                1,
+                Goal::Samples(256),
+                keep_on,
+            )
+            .unwrap();
             let truth = truth.parts["diffuse"].mean.mean();
             for voxelizer in ["compute", "raster"] {
                 let mut frame = frame(&lab, &experiment(voxelizer), &scene, &["diffuseIndirect"]);
                 let found = mean(&floats(&mut frame, "diffuseIndirect", 0));
-                println!("{name} of {cells} cells, {voxelizer}: {:.3} of the light", found / truth);
-                assert!((0.9..1.1).contains(&(found / truth)), "{name} of {cells} cells: {found}, not {truth}");
+                println!(
+                    "{name} of {cells} cells, {voxelizer}: {:.3} of the light",
+                    found / truth
+                );
+                assert!(
+                    (0.9..1.1).contains(&(found / truth)),
+                    "{name} of {cells} cells: {found}, not {truth}"
+                );
             }
         }
     }

@@ -14,10 +14,13 @@ use glam::{DVec3, Mat4, Vec3};
 use proptest::prelude::*;
 use tempfile::TempDir;
 
-const QUAD: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+const QUAD: &str =
+    "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
 
 fn open(spec: impl AsRef<Path>) -> Result<Scene, SceneError> {
-    Scene::open(&spec.as_ref().to_string_lossy(), &|_, _| ControlFlow::Continue(()))
+    Scene::open(&spec.as_ref().to_string_lossy(), &|_, _| {
+        ControlFlow::Continue(())
+    })
 }
 
 #[test]
@@ -33,7 +36,10 @@ fn opening_ends_when_it_is_told_to() {
         for calls in [1, 2] {
             let (count, asked) = (Cell::new(0), Cell::new(None));
             let result = Scene::open(&spec, &|what, done| {
-                assert!(!what.is_empty() && (0.0..=1.0).contains(&done), "{what} {done}");
+                assert!(
+                    !what.is_empty() && (0.0..=1.0).contains(&done),
+                    "{what} {done}"
+                );
                 count.set(count.get() + 1);
                 if count.get() < calls {
                     return ControlFlow::Continue(());
@@ -41,9 +47,15 @@ fn opening_ends_when_it_is_told_to() {
                 asked.set(Some(Instant::now()));
                 ControlFlow::Break(())
             });
-            assert!(matches!(result, Err(SceneError::Cancelled)), "{spec}, call {calls}");
+            assert!(
+                matches!(result, Err(SceneError::Cancelled)),
+                "{spec}, call {calls}"
+            );
             assert_eq!(count.get(), calls, "{spec}: asked again after the end");
-            assert!(asked.get().unwrap().elapsed().as_millis() < 500, "{spec}, call {calls}");
+            assert!(
+                asked.get().unwrap().elapsed().as_millis() < 500,
+                "{spec}, call {calls}"
+            );
         }
     }
 }
@@ -63,7 +75,10 @@ fn image(folder: &TempDir, name: &str, w: u32, h: u32, texel: impl Fn(u32, u32) 
     let path = folder.path().join(name);
     let rgba = image::RgbaImage::from_fn(w, h, |x, y| image::Rgba(texel(x, y)));
     if name.ends_with("jpg") {
-        image::DynamicImage::ImageRgba8(rgba).into_rgb8().save(path).unwrap();
+        image::DynamicImage::ImageRgba8(rgba)
+            .into_rgb8()
+            .save(path)
+            .unwrap();
     } else {
         rgba.save(path).unwrap();
     }
@@ -81,14 +96,21 @@ fn assert_error(result: Result<Scene, SceneError>, pieces: &[&str]) {
 #[track_caller]
 fn assert_warning(scene: &Scene, pieces: &[&str]) {
     let fits = |warning: &&String| pieces.iter().all(|piece| warning.contains(piece));
-    assert!(scene.warnings.iter().any(|w| fits(&w)), "{pieces:?} not in {:#?}", scene.warnings);
+    assert!(
+        scene.warnings.iter().any(|w| fits(&w)),
+        "{pieces:?} not in {:#?}",
+        scene.warnings
+    );
 }
 
 /// World corners of all triangles, in the order of the file.
 fn triangles(scene: &Scene) -> Vec<[Vec3; 3]> {
     let mut all = Vec::new();
     for (i, instance) in scene.instances.iter().enumerate() {
-        let (mesh, world) = (&scene.meshes[instance.mesh as usize], scene.instance_transform(i, 0.0));
+        let (mesh, world) = (
+            &scene.meshes[instance.mesh as usize],
+            scene.instance_transform(i, 0.0),
+        );
         for t in mesh.indices.as_chunks::<3>().0 {
             all.push(t.map(|i| world.transform_point3(mesh.vertices[i as usize].position.into())));
         }
@@ -119,10 +141,20 @@ fn assert_same_scene(a: &Scene, b: &Scene) {
         assert_eq!(m.name, n.name);
         assert!(m.base_color.abs_diff_eq(n.base_color, 1e-5), "{m:?} {n:?}");
         assert!(m.emission.abs_diff_eq(n.emission, 1e-4), "{m:?} {n:?}");
-        assert_eq!((m.metallic, m.roughness, m.two_sided), (n.metallic, n.roughness, n.two_sided), "{}", m.name);
+        assert_eq!(
+            (m.metallic, m.roughness, m.two_sided),
+            (n.metallic, n.roughness, n.two_sided),
+            "{}",
+            m.name
+        );
         assert_eq!(m.alpha_cutoff, n.alpha_cutoff, "{}", m.name);
         let maps = |x: &conelab::scene::Material| {
-            [x.base_color_texture, x.metallic_roughness_texture, x.normal_texture, x.emission_texture]
+            [
+                x.base_color_texture,
+                x.metallic_roughness_texture,
+                x.normal_texture,
+                x.emission_texture,
+            ]
         };
         for (s, t) in maps(m).into_iter().zip(maps(n)) {
             let (Some(s), Some(t)) = (s, t) else {
@@ -130,10 +162,19 @@ fn assert_same_scene(a: &Scene, b: &Scene) {
                 continue;
             };
             let (s, t) = (&a.textures[s as usize], &b.textures[t as usize]);
-            assert_eq!((s.width, s.height, s.format), (t.width, t.height, t.format), "{}", m.name);
+            assert_eq!(
+                (s.width, s.height, s.format),
+                (t.width, t.height, t.format),
+                "{}",
+                m.name
+            );
             // Red of a metallic-roughness image means nothing; the rest must be the same.
             let far = |(x, y): (&[u8; 4], &[u8; 4])| x[1..] != y[1..];
-            let pairs = s.mips[0].as_chunks::<4>().0.iter().zip(t.mips[0].as_chunks::<4>().0);
+            let pairs = s.mips[0]
+                .as_chunks::<4>()
+                .0
+                .iter()
+                .zip(t.mips[0].as_chunks::<4>().0);
             assert_eq!(pairs.filter(|&p| far(p)).count(), 0, "texels of {}", m.name);
         }
     }
@@ -143,7 +184,9 @@ fn assert_same_scene(a: &Scene, b: &Scene) {
 fn obj_with_every_kind_of_map() {
     let dir = folder();
     image(&dir, "color.png", 8, 4, |x, _| [x as u8 * 30, 100, 50, 255]);
-    image(&dir, "mask.png", 8, 4, |x, _| [if x < 4 { 255 } else { 0 }, 0, 0, 255]);
+    image(&dir, "mask.png", 8, 4, |x, _| {
+        [if x < 4 { 255 } else { 0 }, 0, 0, 255]
+    });
     image(&dir, "rough.png", 4, 4, |_, _| [64, 64, 64, 255]);
     image(&dir, "metal.bmp", 4, 4, |_, _| [200, 200, 200, 255]);
     image(&dir, "wall_normal.tga", 4, 4, |_, _| [128, 128, 255, 255]);
@@ -157,17 +200,33 @@ fn obj_with_every_kind_of_map() {
     assert_eq!((scene.triangle_count(), scene.meshes.len()), (3, 2));
     assert_eq!(scene.bounds(), (Vec3::ZERO, Vec3::new(2.0, 1.0, 0.0)));
     let (full, old) = (&scene.materials[0], &scene.materials[1]);
-    assert_eq!((full.roughness, full.metallic, full.alpha_cutoff), (0.25, 0.75, 0.5));
+    assert_eq!(
+        (full.roughness, full.metallic, full.alpha_cutoff),
+        (0.25, 0.75, 0.5)
+    );
     assert_eq!(full.emission, Vec3::new(2.0, 3.0, 4.0));
     assert_eq!(old.roughness, (2.0f32 / 200.0).sqrt());
     let texture = |index: Option<u32>| &scene.textures[index.unwrap() as usize];
     let color = texture(full.base_color_texture);
-    assert_eq!((color.width, color.height, color.format), (8, 4, TextureFormat::Rgba8Srgb));
-    assert_eq!((color.mips[0][3], color.mips[0][31]), (255, 0), "the mask is the colour's alpha");
+    assert_eq!(
+        (color.width, color.height, color.format),
+        (8, 4, TextureFormat::Rgba8Srgb)
+    );
+    assert_eq!(
+        (color.mips[0][3], color.mips[0][31]),
+        (255, 0),
+        "the mask is the colour's alpha"
+    );
     let rough_metal = texture(full.metallic_roughness_texture);
     assert_eq!((rough_metal.mips[0][1], rough_metal.mips[0][2]), (64, 200));
-    assert_eq!(texture(full.normal_texture).format, TextureFormat::Rgba8Unorm);
-    assert_eq!(texture(full.emission_texture).format, TextureFormat::Rgba8Srgb);
+    assert_eq!(
+        texture(full.normal_texture).format,
+        TextureFormat::Rgba8Unorm
+    );
+    assert_eq!(
+        texture(full.emission_texture).format,
+        TextureFormat::Rgba8Srgb
+    );
     // A bare model is lit and seen.
     assert_eq!(scene.lights.len(), 1);
     assert!(scene.lights[0].shadow && scene.cameras.contains_key("default") && scene.sky.x > 0.0);
@@ -182,10 +241,21 @@ fn smooth_normals_stop_at_creases() {
     // Two faces that meet at 30 degrees and a third at 90.
     let obj = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv -0.866 -0.5 0\nv 0 -1 0\nf 1 2 3\nf 2 1 4\nf 1 3 5\n";
     let scene = open(write(&dir, "crease.obj", obj)).unwrap();
-    let normals: Vec<Vec3> =
-        scene.meshes[0].vertices.iter().filter(|v| v.position == [0.0; 3]).map(|v| v.normal.into()).collect();
-    assert_eq!(normals.len(), 2, "the flat pair shares one vertex, the crease has its own: {normals:?}");
-    assert!(normals.iter().any(|n| n.y > 0.9 && n.x < -0.1), "{normals:?}");
+    let normals: Vec<Vec3> = scene.meshes[0]
+        .vertices
+        .iter()
+        .filter(|v| v.position == [0.0; 3])
+        .map(|v| v.normal.into())
+        .collect();
+    assert_eq!(
+        normals.len(),
+        2,
+        "the flat pair shares one vertex, the crease has its own: {normals:?}"
+    );
+    assert!(
+        normals.iter().any(|n| n.y > 0.9 && n.x < -0.1),
+        "{normals:?}"
+    );
     assert!(normals.iter().any(|n| n.z.abs() > 0.999), "{normals:?}");
 }
 
@@ -193,9 +263,17 @@ fn smooth_normals_stop_at_creases() {
 fn missing_and_corrupt_textures_have_stand_ins() {
     let dir = folder();
     write(&dir, "bad.png", b"\x89PNG\r\n\x1a\nbroken");
-    write(&dir, "a.mtl", "newmtl gone\nmap_Kd nowhere.png\nnewmtl broken\nmap_Kd bad.png\n");
-    let scene =
-        open(write(&dir, "a.obj", format!("mtllib a.mtl\nusemtl gone\n{QUAD}usemtl broken\nf 1 2 3\n"))).unwrap();
+    write(
+        &dir,
+        "a.mtl",
+        "newmtl gone\nmap_Kd nowhere.png\nnewmtl broken\nmap_Kd bad.png\n",
+    );
+    let scene = open(write(
+        &dir,
+        "a.obj",
+        format!("mtllib a.mtl\nusemtl gone\n{QUAD}usemtl broken\nf 1 2 3\n"),
+    ))
+    .unwrap();
     assert_warning(&scene, &["nowhere.png of material gone", "does not exist"]);
     assert_warning(&scene, &["bad.png of material broken", "damaged"]);
     for texture in &scene.textures {
@@ -212,8 +290,17 @@ fn hostile_images_are_refused() {
     png.extend([0x12, 0x34, 0x56, 0x78]);
     write(&dir, "bomb.png", png);
     write(&dir, "short.dds", b"DDS \x7c\0\0\0");
-    write(&dir, "a.mtl", "newmtl m\nmap_Kd bomb.png\nnewmtl n\nmap_Kd short.dds\n");
-    let scene = open(write(&dir, "a.obj", format!("mtllib a.mtl\nusemtl m\n{QUAD}"))).unwrap();
+    write(
+        &dir,
+        "a.mtl",
+        "newmtl m\nmap_Kd bomb.png\nnewmtl n\nmap_Kd short.dds\n",
+    );
+    let scene = open(write(
+        &dir,
+        "a.obj",
+        format!("mtllib a.mtl\nusemtl m\n{QUAD}"),
+    ))
+    .unwrap();
     assert_warning(&scene, &["bomb.png", "checkerboard"]);
     assert_warning(&scene, &["short.dds", "DDS header"]);
 }
@@ -223,16 +310,32 @@ fn large_textures_are_reduced() {
     let dir = folder();
     image(&dir, "wide.png", 5000, 10, |_, _| [10, 20, 30, 255]);
     write(&dir, "a.mtl", "newmtl m\nmap_Kd wide.png\n");
-    let scene = open(write(&dir, "a.obj", format!("mtllib a.mtl\nusemtl m\n{QUAD}"))).unwrap();
+    let scene = open(write(
+        &dir,
+        "a.obj",
+        format!("mtllib a.mtl\nusemtl m\n{QUAD}"),
+    ))
+    .unwrap();
     assert_warning(&scene, &["wide.png", "5000x10", "4096x8"]);
     assert_eq!(scene.textures[0].mips[0][..4], [10, 20, 30, 255]);
 }
 
 /// A box as OBJ, its sides towards the outside.
 fn obj_box(low: Vec3, high: Vec3, first: usize) -> String {
-    let corner = |i: usize| Vec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), high, low);
-    let mut text: String = (0..8).map(corner).map(|c| format!("v {} {} {}\n", c.x, c.y, c.z)).collect();
-    for side in [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]] {
+    let corner =
+        |i: usize| Vec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), high, low);
+    let mut text: String = (0..8)
+        .map(corner)
+        .map(|c| format!("v {} {} {}\n", c.x, c.y, c.z))
+        .collect();
+    for side in [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ] {
         text += &format!("f {}\n", side.map(|i| (i + first).to_string()).join(" "));
     }
     text
@@ -244,15 +347,32 @@ fn a_model_without_a_camera_is_not_seen_from_inside_of_something() {
     // Inside out, a box is a room.
     let room = obj_box(Vec3::new(5.0, 3.0, 4.0), Vec3::new(-5.0, 0.0, -4.0), 1);
     let usual = open(write(&folder, "room.obj", &room)).unwrap().cameras["default"].eye;
-    let (low, high) = (usual - Vec3::new(0.8, 0.5, 0.8), usual + Vec3::new(0.8, 1.0, 0.8));
+    let (low, high) = (
+        usual - Vec3::new(0.8, 0.5, 0.8),
+        usual + Vec3::new(0.8, 1.0, 0.8),
+    );
     let block = obj_box(low, high, 9);
     let blocked = open(write(&folder, "blocked.obj", format!("{room}{block}"))).unwrap();
     let eye = blocked.cameras["default"].eye;
-    assert!(eye.cmplt(low).any() || eye.cmpgt(high).any(), "{eye} is inside of the box from {low} to {high}");
-    assert!(eye.abs().cmplt(Vec3::new(5.0, 3.0, 4.0)).all(), "{eye} has left the room");
-    let body = open(write(&folder, "body.obj", obj_box(Vec3::ZERO, Vec3::ONE, 1))).unwrap();
+    assert!(
+        eye.cmplt(low).any() || eye.cmpgt(high).any(),
+        "{eye} is inside of the box from {low} to {high}"
+    );
+    assert!(
+        eye.abs().cmplt(Vec3::new(5.0, 3.0, 4.0)).all(),
+        "{eye} has left the room"
+    );
+    let body = open(write(
+        &folder,
+        "body.obj",
+        obj_box(Vec3::ZERO, Vec3::ONE, 1),
+    ))
+    .unwrap();
     let Vec3 { x, z, .. } = body.cameras["default"].eye;
-    assert!(!(0.0..=1.0).contains(&x) || !(0.0..=1.0).contains(&z), "a single body is seen from outside");
+    assert!(
+        !(0.0..=1.0).contains(&x) || !(0.0..=1.0).contains(&z),
+        "a single body is seen from outside"
+    );
 }
 
 #[test]
@@ -261,23 +381,63 @@ fn bad_triangles_are_dropped_and_counted() {
     let obj = format!("{QUAD}v nan 0 0\nv 3 3 3\nf 1 2 5\nf 1 1 2\nf 1 6 6\n");
     let scene = open(write(&dir, "bad.obj", obj)).unwrap();
     assert_eq!(scene.triangle_count(), 2);
-    assert_eq!(scene.bounds().1, Vec3::new(2.0, 1.0, 0.0), "dropped vertices do not count");
-    assert_warning(&scene, &["bad.obj", "1 triangles with NaN", "2 triangles without area"]);
+    assert_eq!(
+        scene.bounds().1,
+        Vec3::new(2.0, 1.0, 0.0),
+        "dropped vertices do not count"
+    );
+    assert_warning(
+        &scene,
+        &[
+            "bad.obj",
+            "1 triangles with NaN",
+            "2 triangles without area",
+        ],
+    );
     assert_eq!(scene.warnings.len(), 1);
 }
 
 #[test]
 fn bad_models_are_errors_with_advice() {
     let dir = folder();
-    assert_error(open(dir.path().join("none.obj")), &["none.obj", "Check the path"]);
-    assert_error(open(write(&dir, "index.obj", "v 0 0 0\nf 1 2 3\n")), &["index.obj", "line 2", "Export it again"]);
-    assert_error(open(write(&dir, "text.obj", "v a b c\n")), &["text.obj", "position", "line 1"]);
-    assert_error(open(write(&dir, "a.fbx", "")), &["a.fbx", "it is no FBX file", "export it again"]);
-    assert_error(open(write(&dir, "a.blend", "")), &["a.blend", "convert other formats to glTF"]);
-    assert_error(open("cornel"), &["cornel", "did you mean 'cornell'?", "furnace"]);
-    assert_error(open(write(&dir, "cut.glb", b"glTF\x02\0\0\0\xff\0\0\0")), &["cut.glb", "Export it again"]);
-    assert_error(open(write(&dir, "empty.gltf", "{}")), &["empty.gltf", "Export it again"]);
-    let scene = open(write(&dir, "lib.obj", format!("mtllib none.mtl\nusemtl x\n{QUAD}"))).unwrap();
+    assert_error(
+        open(dir.path().join("none.obj")),
+        &["none.obj", "Check the path"],
+    );
+    assert_error(
+        open(write(&dir, "index.obj", "v 0 0 0\nf 1 2 3\n")),
+        &["index.obj", "line 2", "Export it again"],
+    );
+    assert_error(
+        open(write(&dir, "text.obj", "v a b c\n")),
+        &["text.obj", "position", "line 1"],
+    );
+    assert_error(
+        open(write(&dir, "a.fbx", "")),
+        &["a.fbx", "it is no FBX file", "export it again"],
+    );
+    assert_error(
+        open(write(&dir, "a.blend", "")),
+        &["a.blend", "convert other formats to glTF"],
+    );
+    assert_error(
+        open("cornel"),
+        &["cornel", "did you mean 'cornell'?", "furnace"],
+    );
+    assert_error(
+        open(write(&dir, "cut.glb", b"glTF\x02\0\0\0\xff\0\0\0")),
+        &["cut.glb", "Export it again"],
+    );
+    assert_error(
+        open(write(&dir, "empty.gltf", "{}")),
+        &["empty.gltf", "Export it again"],
+    );
+    let scene = open(write(
+        &dir,
+        "lib.obj",
+        format!("mtllib none.mtl\nusemtl x\n{QUAD}"),
+    ))
+    .unwrap();
     assert_warning(&scene, &["none.mtl", "grey"]);
 }
 
@@ -285,7 +445,10 @@ fn bad_models_are_errors_with_advice() {
 fn empty_scenes_are_legal() {
     let dir = folder();
     let scene = open(write(&dir, "empty.obj", "# nothing\n")).unwrap();
-    assert_eq!((scene.triangle_count(), scene.bounds()), (0, (Vec3::ZERO, Vec3::ZERO)));
+    assert_eq!(
+        (scene.triangle_count(), scene.bounds()),
+        (0, (Vec3::ZERO, Vec3::ZERO))
+    );
     let scene = open(write(&dir, "empty.ron", "(sky: (1, 1, 1))")).unwrap();
     assert_eq!(scene.sky, Vec3::ONE);
     assert!(scene.cameras.contains_key("default"));
@@ -294,7 +457,14 @@ fn empty_scenes_are_legal() {
 /// A glTF triangle in a buffer of 9 floats, with replaceable parts.
 fn gltf(folder: &TempDir, change: impl Fn(&mut serde_json::Value)) -> PathBuf {
     let corners: [f32; 9] = [0., 0., 0., 1., 0., 0., 0., 1., 0.];
-    write(folder, "t ri.bin", corners.iter().flat_map(|f| f.to_le_bytes()).collect::<Vec<u8>>());
+    write(
+        folder,
+        "t ri.bin",
+        corners
+            .iter()
+            .flat_map(|f| f.to_le_bytes())
+            .collect::<Vec<u8>>(),
+    );
     let mut root = serde_json::json!({
         "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }],
         "nodes": [
@@ -324,11 +494,20 @@ fn gltf_hierarchy_lights_and_cameras() {
     let dir = folder();
     let scene = open(gltf(&dir, |_| {})).unwrap();
     assert_eq!(scene.warnings, Vec::<String>::new());
-    assert_eq!(scene.bounds(), (Vec3::new(10.0, 2.0, 0.0), Vec3::new(12.0, 4.0, 0.0)));
+    assert_eq!(
+        scene.bounds(),
+        (Vec3::new(10.0, 2.0, 0.0), Vec3::new(12.0, 4.0, 0.0))
+    );
     assert_eq!(scene.materials[0].emission, Vec3::new(4.0, 2.0, 0.0));
     assert_eq!(scene.lights.len(), 1, "a model with lights gets no sun");
     assert_eq!(scene.lights[0].color, Vec3::new(6.0, 3.0, 0.0));
-    assert_eq!(scene.lights[0].kind, LightKind::Spot { inner: 0.1, outer: 0.4 });
+    assert_eq!(
+        scene.lights[0].kind,
+        LightKind::Spot {
+            inner: 0.1,
+            outer: 0.4
+        }
+    );
     assert_near(scene.lights[0].direction, Vec3::NEG_Z, 1e-6);
     assert_near(scene.cameras["eye"].eye, Vec3::new(10.0, 0.0, 0.0), 1e-6);
     assert!(scene.cameras.contains_key("default"));
@@ -354,7 +533,10 @@ fn gltf_embedded_data_and_texture_transform() {
     assert_eq!(scene.triangle_count(), 1);
     assert_warning(&scene, &["no.png of material m"]);
     let uvs: Vec<[f32; 2]> = scene.meshes[0].vertices.iter().map(|v| v.uv).collect();
-    assert!(uvs.contains(&[0.5, 3.0]) && uvs.contains(&[0.5, 0.0]), "{uvs:?}");
+    assert!(
+        uvs.contains(&[0.5, 3.0]) && uvs.contains(&[0.5, 0.0]),
+        "{uvs:?}"
+    );
 }
 
 #[test]
@@ -362,19 +544,39 @@ fn damaged_gltf_is_an_error() {
     let dir = folder();
     type Change = fn(&mut serde_json::Value);
     let cases: [(Change, &str); 9] = [
-        (|r| r["accessors"][0]["bufferView"] = 99.into(), "accessors[0].bufferView: index out of bounds"),
+        (
+            |r| r["accessors"][0]["bufferView"] = 99.into(),
+            "accessors[0].bufferView: index out of bounds",
+        ),
         (|r| r["buffers"][0]["uri"] = "gone.bin".into(), "gone.bin"),
         (|r| r["buffers"][0]["byteLength"] = 99.into(), "cut short"),
-        (|r| r["accessors"][0]["count"] = 4.into(), "reaches past the end"),
-        (|r| r["bufferViews"][0]["byteOffset"] = 30.into(), "reaches past the end"),
-        (|r| r["nodes"][1]["children"] = serde_json::json!([0]), "own ancestor"),
-        (|r| r["extensions"]["KHR_lights_punctual"]["lights"][0]["spot"] = serde_json::Value::Null, "spot"),
-        (|r| r["cameras"][0]["type"] = "orthographic".into(), "camera 0"),
+        (
+            |r| r["accessors"][0]["count"] = 4.into(),
+            "reaches past the end",
+        ),
+        (
+            |r| r["bufferViews"][0]["byteOffset"] = 30.into(),
+            "reaches past the end",
+        ),
+        (
+            |r| r["nodes"][1]["children"] = serde_json::json!([0]),
+            "own ancestor",
+        ),
+        (
+            |r| {
+                r["extensions"]["KHR_lights_punctual"]["lights"][0]["spot"] =
+                    serde_json::Value::Null
+            },
+            "spot",
+        ),
+        (
+            |r| r["cameras"][0]["type"] = "orthographic".into(),
+            "camera 0",
+        ),
         (
             |r| {
                 r["meshes"][0]["primitives"][0]["indices"] = 1.into();
-                let indices =
-                    serde_json::json!({ "bufferView": 0, "componentType": 5125, "type": "SCALAR", "count": 6 });
+                let indices = serde_json::json!({ "bufferView": 0, "componentType": 5125, "type": "SCALAR", "count": 6 });
                 r["accessors"].as_array_mut().unwrap().push(indices);
             },
             "index",
@@ -403,7 +605,10 @@ fn dds_keeps_blocks_and_stored_mips() {
             alpha_mode: AlphaMode::Straight,
         })
         .unwrap();
-        file.data.iter_mut().enumerate().for_each(|(i, byte)| *byte = i as u8);
+        file.data
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, byte)| *byte = i as u8);
         let mut bytes = Vec::new();
         file.write(&mut bytes).unwrap();
         bytes.truncate(bytes.len() - cut);
@@ -415,15 +620,40 @@ fn dds_keeps_blocks_and_stored_mips() {
     dds("plain.dds", DxgiFormat::R8G8B8A8_UNorm, 4, 1, 0);
     dds("cut.dds", DxgiFormat::BC3_UNorm, 16, 3, 20);
     let names = ["bc1", "bc7", "plain", "cut"];
-    let mut mtl: String = names.iter().map(|n| format!("newmtl {n}\nmap_Kd {n}.dds\n")).collect();
+    let mut mtl: String = names
+        .iter()
+        .map(|n| format!("newmtl {n}\nmap_Kd {n}.dds\n"))
+        .collect();
     mtl.push_str("newmtl bc5\nnorm bc5.dds\n");
     write(&dir, "a.mtl", mtl);
-    let scene = open(write(&dir, "a.obj", format!("mtllib a.mtl\nusemtl bc1\n{QUAD}"))).unwrap();
-    let found: Vec<_> = scene.textures.iter().map(|t| (t.format, t.mips.len())).collect();
+    let scene = open(write(
+        &dir,
+        "a.obj",
+        format!("mtllib a.mtl\nusemtl bc1\n{QUAD}"),
+    ))
+    .unwrap();
+    let found: Vec<_> = scene
+        .textures
+        .iter()
+        .map(|t| (t.format, t.mips.len()))
+        .collect();
     use TextureFormat::*;
-    let expected = [(Bc1Srgb, 3), (Bc7Srgb, 1), (Rgba8Srgb, 3), (Rgba8Srgb, 4), (Bc5Unorm, 4)];
+    let expected = [
+        (Bc1Srgb, 3),
+        (Bc7Srgb, 1),
+        (Rgba8Srgb, 3),
+        (Rgba8Srgb, 4),
+        (Bc5Unorm, 4),
+    ];
     assert_eq!(found, expected);
-    assert_eq!(scene.textures[0].mips.iter().map(Vec::len).collect::<Vec<_>>(), [128, 32, 8]);
+    assert_eq!(
+        scene.textures[0]
+            .mips
+            .iter()
+            .map(Vec::len)
+            .collect::<Vec<_>>(),
+        [128, 32, 8]
+    );
     assert_eq!(scene.textures[2].mips[0][..4], [0, 1, 2, 3]);
     assert_warning(&scene, &["cut.dds", "ends inside mip level"]);
 }
@@ -432,20 +662,50 @@ fn dds_keeps_blocks_and_stored_mips() {
 fn mips_are_linear_light_unit_normals_and_full_coverage() {
     let dir = folder();
     // Black and white columns: the mean light is 0.5, which is 188 in sRGB.
-    image(&dir, "stripes.png", 6, 5, |x, _| if x % 2 == 0 { [0, 0, 0, 255] } else { [255; 4] });
+    image(&dir, "stripes.png", 6, 5, |x, _| {
+        if x % 2 == 0 { [0, 0, 0, 255] } else { [255; 4] }
+    });
     // Soft grass: one texel in four passes the cutoff, half are empty and red.
     let blade = |x: u32, y: u32| {
         let mixed = x.wrapping_mul(374_761_393) ^ y.wrapping_mul(668_265_263);
         let chance = (mixed ^ (mixed >> 13)).wrapping_mul(1_274_126_177) >> 24;
-        if chance < 128 { [0, 200, 0, 192 - chance as u8] } else { [255, 0, 0, 0] }
+        if chance < 128 {
+            [0, 200, 0, 192 - chance as u8]
+        } else {
+            [255, 0, 0, 0]
+        }
     };
     image(&dir, "grass.png", 64, 64, blade);
-    image(&dir, "n.png", 4, 4, |x, _| if x % 2 == 0 { [255, 128, 128, 255] } else { [128, 255, 128, 255] });
-    write(&dir, "a.mtl", "newmtl m\nmap_Kd stripes.png\nnorm n.png\nnewmtl g\nmap_Kd grass.png\nmap_d grass.png\n");
-    let scene = open(write(&dir, "a.obj", format!("mtllib a.mtl\nusemtl m\n{QUAD}"))).unwrap();
-    let texture = |name: &str| scene.textures.iter().find(|t| t.name.ends_with(name)).unwrap();
+    image(&dir, "n.png", 4, 4, |x, _| {
+        if x % 2 == 0 {
+            [255, 128, 128, 255]
+        } else {
+            [128, 255, 128, 255]
+        }
+    });
+    write(
+        &dir,
+        "a.mtl",
+        "newmtl m\nmap_Kd stripes.png\nnorm n.png\nnewmtl g\nmap_Kd grass.png\nmap_d grass.png\n",
+    );
+    let scene = open(write(
+        &dir,
+        "a.obj",
+        format!("mtllib a.mtl\nusemtl m\n{QUAD}"),
+    ))
+    .unwrap();
+    let texture = |name: &str| {
+        scene
+            .textures
+            .iter()
+            .find(|t| t.name.ends_with(name))
+            .unwrap()
+    };
     let stripes = texture("stripes.png");
-    assert_eq!(stripes.mips.iter().map(Vec::len).collect::<Vec<_>>(), [6 * 5 * 4, 3 * 2 * 4, 4]);
+    assert_eq!(
+        stripes.mips.iter().map(Vec::len).collect::<Vec<_>>(),
+        [6 * 5 * 4, 3 * 2 * 4, 4]
+    );
     assert_eq!(stripes.mips[1][0], 188);
     assert_eq!(stripes.mips[2][0], 188);
     let grass = texture("grass.png");
@@ -454,9 +714,16 @@ fn mips_are_linear_light_unit_normals_and_full_coverage() {
         texels.iter().filter(|t| t[3] >= 128).count() as f32 / texels.len() as f32
     };
     for level in &grass.mips[1..4] {
-        assert!((opaque(level) - opaque(&grass.mips[0])).abs() < 0.06, "coverage {}", opaque(level));
+        assert!(
+            (opaque(level) - opaque(&grass.mips[0])).abs() < 0.06,
+            "coverage {}",
+            opaque(level)
+        );
     }
-    assert!(grass.mips[2].as_chunks::<4>().0.iter().all(|t| t[0] < 8), "the hidden red does not bleed in");
+    assert!(
+        grass.mips[2].as_chunks::<4>().0.iter().all(|t| t[0] < 8),
+        "the hidden red does not bleed in"
+    );
     for t in texture("n.png").mips[1].as_chunks::<4>().0 {
         let n = Vec3::new(t[0].into(), t[1].into(), t[2].into()) / 127.5 - 1.0;
         assert!((n.length() - 1.0).abs() < 0.02, "{n}");
@@ -468,15 +735,28 @@ fn built_in_scenes_are_sound() {
     for (name, _) in builtin::list() {
         let scene = open(name).unwrap();
         assert_eq!(scene.warnings, Vec::<String>::new(), "{name}");
-        assert!(scene.cameras.contains_key("default") && scene.triangle_count() > 0, "{name}");
+        assert!(
+            scene.cameras.contains_key("default") && scene.triangle_count() > 0,
+            "{name}"
+        );
         for mesh in &scene.meshes {
             for v in &mesh.vertices {
-                let (n, t) = (Vec3::from(v.normal), Vec3::new(v.tangent[0], v.tangent[1], v.tangent[2]));
-                assert!((n.length() - 1.0).abs() < 1e-3 && (t.length() - 1.0).abs() < 1e-3, "{name} {}", mesh.name);
+                let (n, t) = (
+                    Vec3::from(v.normal),
+                    Vec3::new(v.tangent[0], v.tangent[1], v.tangent[2]),
+                );
+                assert!(
+                    (n.length() - 1.0).abs() < 1e-3 && (t.length() - 1.0).abs() < 1e-3,
+                    "{name} {}",
+                    mesh.name
+                );
             }
         }
         let again = open(name).unwrap();
-        assert!(again.meshes == scene.meshes && again.textures == scene.textures, "{name} differs when built again");
+        assert!(
+            again.meshes == scene.meshes && again.textures == scene.textures,
+            "{name} differs when built again"
+        );
     }
 }
 
@@ -487,33 +767,76 @@ fn built_in_scenes_are_seen_and_lit() {
         let triangles = world(&scene);
         for [a, b, c] in &triangles {
             assert!(a.is_finite() && b.is_finite() && c.is_finite(), "{name}");
-            let longest = a.distance_squared(*b).max(b.distance_squared(*c)).max(c.distance_squared(*a));
-            assert!((b - a).cross(c - a).length() > 1e-9 * longest, "{name}: a triangle without area");
+            let longest = a
+                .distance_squared(*b)
+                .max(b.distance_squared(*c))
+                .max(c.distance_squared(*a));
+            assert!(
+                (b - a).cross(c - a).length() > 1e-9 * longest,
+                "{name}: a triangle without area"
+            );
         }
         for (camera, c) in &scene.cameras {
-            assert!(c.eye.is_finite() && c.target.is_finite() && c.eye != c.target, "{name} {camera}");
-            assert!(0.0 < c.near && c.near < c.far && (5.0..150.0).contains(&c.fov_y), "{name} {camera}");
+            assert!(
+                c.eye.is_finite() && c.target.is_finite() && c.eye != c.target,
+                "{name} {camera}"
+            );
+            assert!(
+                0.0 < c.near && c.near < c.far && (5.0..150.0).contains(&c.fov_y),
+                "{name} {camera}"
+            );
             let (eye, ahead) = (c.eye.as_dvec3(), (c.target - c.eye).as_dvec3().normalize());
-            let right = ahead.cross(c.up.as_dvec3()).normalize() * f64::from(0.5 * c.fov_y.to_radians()).tan();
+            let right = ahead.cross(c.up.as_dvec3()).normalize()
+                * f64::from(0.5 * c.fov_y.to_radians()).tan();
             let seen = f64::from(c.near)..f64::from(c.far);
             // Straight ahead, half way to the picture's left and right edge, and to its lower one.
             let below = right.cross(ahead) * -0.5;
-            let rays = [ahead, ahead - 0.5 * right, ahead + 0.5 * right, ahead + below];
-            let nearest =
-                |ray: DVec3| triangles.iter().filter_map(|t| meets(eye, ray, *t)).fold(f64::INFINITY, f64::min);
-            assert!(rays.iter().any(|ray| seen.contains(&nearest(*ray))), "{name} {camera} sees nothing in {seen:?}");
+            let rays = [
+                ahead,
+                ahead - 0.5 * right,
+                ahead + 0.5 * right,
+                ahead + below,
+            ];
+            let nearest = |ray: DVec3| {
+                triangles
+                    .iter()
+                    .filter_map(|t| meets(eye, ray, *t))
+                    .fold(f64::INFINITY, f64::min)
+            };
+            assert!(
+                rays.iter().any(|ray| seen.contains(&nearest(*ray))),
+                "{name} {camera} sees nothing in {seen:?}"
+            );
         }
         for m in &scene.materials {
             let color = m.base_color.truncate();
-            assert!(color.min_element() >= 0.0 && color.max_element() <= 1.0, "{name} {}", m.name);
-            assert!(m.emission.is_finite() && m.emission.min_element() >= 0.0, "{name} {}", m.name);
-            assert!((0.0..=1.0).contains(&m.roughness) && (0.0..=1.0).contains(&m.metallic), "{name} {}", m.name);
+            assert!(
+                color.min_element() >= 0.0 && color.max_element() <= 1.0,
+                "{name} {}",
+                m.name
+            );
+            assert!(
+                m.emission.is_finite() && m.emission.min_element() >= 0.0,
+                "{name} {}",
+                m.name
+            );
+            assert!(
+                (0.0..=1.0).contains(&m.roughness) && (0.0..=1.0).contains(&m.metallic),
+                "{name} {}",
+                m.name
+            );
         }
         for light in &scene.lights {
-            assert!((light.direction.length() - 1.0).abs() < 1e-3 && light.color.min_element() > 0.0, "{name}");
+            assert!(
+                (light.direction.length() - 1.0).abs() < 1e-3 && light.color.min_element() > 0.0,
+                "{name}"
+            );
         }
         let glows = scene.materials.iter().any(|m| m.emission != Vec3::ZERO);
-        assert!(glows || scene.sky != Vec3::ZERO || !scene.lights.is_empty(), "{name} is dark");
+        assert!(
+            glows || scene.sky != Vec3::ZERO || !scene.lights.is_empty(),
+            "{name} is dark"
+        );
     }
 }
 
@@ -541,10 +864,16 @@ fn walls_of_built_in_rooms_have_no_cracks() {
         let scene = open(name).unwrap();
         let mesh = scene.meshes.iter().find(|m| m.name == walls).unwrap();
         let mut edges: HashMap<[[u32; 3]; 2], i32> = HashMap::new();
-        let corner = |i: u32| (Vec3::from(mesh.vertices[i as usize].position) + 0.0).to_array().map(f32::to_bits);
+        let corner = |i: u32| {
+            (Vec3::from(mesh.vertices[i as usize].position) + 0.0)
+                .to_array()
+                .map(f32::to_bits)
+        };
         // A balcony's plates are bodies of their own: closed as well.
         for t in mesh.indices.as_chunks::<3>().0 {
-            for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| (corner(a), corner(b))) {
+            for (a, b) in
+                [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| (corner(a), corner(b)))
+            {
                 *edges.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
             }
         }
@@ -557,23 +886,43 @@ fn walls_of_built_in_rooms_have_no_cracks() {
 #[test]
 fn lamps_glow_outward() {
     for (name, lamp, volume) in [
-        ("neon-tube", "tube", std::f32::consts::PI * 0.013 * 0.013 * 1.2),
-        ("neon-tube", "red tube", std::f32::consts::PI * 0.013 * 0.013 * 1.2),
-        ("lampshade", "bulbs", 2.0 * std::f32::consts::PI * 4.0 / 3.0 * 0.03 * 0.03 * 0.03),
+        (
+            "neon-tube",
+            "tube",
+            std::f32::consts::PI * 0.013 * 0.013 * 1.2,
+        ),
+        (
+            "neon-tube",
+            "red tube",
+            std::f32::consts::PI * 0.013 * 0.013 * 1.2,
+        ),
+        (
+            "lampshade",
+            "bulbs",
+            2.0 * std::f32::consts::PI * 4.0 / 3.0 * 0.03 * 0.03 * 0.03,
+        ),
     ] {
         let scene = open(name).unwrap();
         let mesh = scene.meshes.iter().find(|m| m.name == lamp).unwrap();
-        let corner = |i: u32| Vec3::from(mesh.vertices[i as usize].position) - Vec3::from(mesh.vertices[0].position);
+        let corner = |i: u32| {
+            Vec3::from(mesh.vertices[i as usize].position) - Vec3::from(mesh.vertices[0].position)
+        };
         let held = |t: &[u32; 3]| corner(t[0]).dot(corner(t[1]).cross(corner(t[2]))) / 6.0;
         let held: f32 = mesh.indices.as_chunks::<3>().0.iter().map(held).sum();
-        assert!((0.93..1.0).contains(&(held / volume)), "{name}: {lamp} holds {held} of {volume}");
+        assert!(
+            (0.93..1.0).contains(&(held / volume)),
+            "{name}: {lamp} holds {held} of {volume}"
+        );
     }
 }
 
 /// One mesh of shapes.
 fn shapes(folder: &TempDir, parts: &str) -> Mesh {
     let text = format!("(materials: {{\"a\": ()}}, meshes: {{\"m\": [{parts}]}})");
-    open(write(folder, "shapes.ron", text)).unwrap().meshes.remove(0)
+    open(write(folder, "shapes.ron", text))
+        .unwrap()
+        .meshes
+        .remove(0)
 }
 
 #[test]
@@ -584,18 +933,37 @@ fn balls_and_boxes_have_an_outside_and_sheets_have_none() {
     assert!(all(&ball, Some(Side::Front)));
     assert!(ball.outsides(1.0).iter().all(Option::is_none), "too large");
     let mut turned = ball.clone();
-    turned.indices.as_chunks_mut::<3>().0.iter_mut().for_each(|t| t.swap(0, 1));
+    turned
+        .indices
+        .as_chunks_mut::<3>()
+        .0
+        .iter_mut()
+        .for_each(|t| t.swap(0, 1));
     assert!(all(&turned, Some(Side::Back)));
     let mut mixed = ball.clone();
-    mixed.indices.as_chunks_mut::<3>().0.iter_mut().step_by(3).for_each(|t| t.swap(0, 1));
-    let turned = (0..).zip(mixed.outsides(10.0)).map(|(i, s)| (i % 3 == 0, s == Some(Side::Back)));
-    assert!(turned.into_iter().all(|(turned, back)| turned == back), "neighbours turn either way");
+    mixed
+        .indices
+        .as_chunks_mut::<3>()
+        .0
+        .iter_mut()
+        .step_by(3)
+        .for_each(|t| t.swap(0, 1));
+    let turned = (0..)
+        .zip(mixed.outsides(10.0))
+        .map(|(i, s)| (i % 3 == 0, s == Some(Side::Back)));
+    assert!(
+        turned.into_iter().all(|(turned, back)| turned == back),
+        "neighbours turn either way"
+    );
     let mut opened = ball.clone();
     opened.indices.truncate(opened.indices.len() - 3);
     assert!(all(&opened, None));
     let cuboid = "Box(material: \"a\", low: (0, 0, 0), high: (1, 1, 1)";
     assert!(all(&shapes(&dir, &format!("{cuboid})")), Some(Side::Front)));
-    assert!(all(&shapes(&dir, &format!("{cuboid}, open: [\"-y\"])")), None));
+    assert!(all(
+        &shapes(&dir, &format!("{cuboid}, open: [\"-y\"])")),
+        None
+    ));
 }
 
 /// Triangles, vertices, instances and materials of the built-in scenes: one that changes must say so here.
@@ -604,7 +972,12 @@ fn built_in_scenes_keep_their_size() {
     let row = |name| {
         let scene = open(name).unwrap();
         let vertices: usize = scene.meshes.iter().map(|m| m.vertices.len()).sum();
-        format!("{name} {} {vertices} {} {}", scene.triangle_count(), scene.instances.len(), scene.materials.len())
+        format!(
+            "{name} {} {vertices} {} {}",
+            scene.triangle_count(),
+            scene.instances.len(),
+            scene.materials.len()
+        )
     };
     insta::assert_snapshot!(builtin::list().map(|(name, _)| row(name)).collect::<Vec<_>>().join("\n"), @r"
     atrium 265240 165735 59 19
@@ -637,41 +1010,89 @@ fn built_in_scenes_keep_their_size() {
 
 #[test]
 fn shapes_repeat_and_stand_where_they_are_put() {
-    let scene = open(Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/scenes/shapes.ron")).unwrap();
+    let scene =
+        open(Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/scenes/shapes.ron")).unwrap();
     assert_eq!(scene.warnings, Vec::<String>::new());
     let names: Vec<&str> = scene.instances.iter().map(|i| i.name.as_str()).collect();
     assert_eq!(names, ["room", "balls", "stool 1", "stool 2", "stool 3"]);
-    assert_eq!(scene.materials.iter().map(|m| m.name.as_str()).collect::<Vec<_>>(), ["plaster", "wood", "red", "blue"]);
+    assert_eq!(
+        scene
+            .materials
+            .iter()
+            .map(|m| m.name.as_str())
+            .collect::<Vec<_>>(),
+        ["plaster", "wood", "red", "blue"]
+    );
     // Six balls in two colours by turns, around the middle.
     let balls = &scene.meshes[1];
     assert_eq!((balls.triangle_count(), balls.submeshes.len()), (6 * 80, 2));
-    let far = balls.vertices.iter().map(|v| Vec3::from(v.position).with_y(0.0).length()).fold(0.0, f32::max);
+    let far = balls
+        .vertices
+        .iter()
+        .map(|v| Vec3::from(v.position).with_y(0.0).length())
+        .fold(0.0, f32::max);
     assert!((far - 1.35).abs() < 0.01, "{far}");
-    assert!(scene.instances[4].transform.w_axis.abs_diff_eq(glam::Vec4::new(1.5, 0.0, 1.4, 1.0), 1e-6));
+    assert!(
+        scene.instances[4]
+            .transform
+            .w_axis
+            .abs_diff_eq(glam::Vec4::new(1.5, 0.0, 1.4, 1.0), 1e-6)
+    );
 }
 
 #[test]
 fn errors_in_shapes_have_a_place_and_limits_hold() {
     let dir = folder();
     let error = |parts: &str, pieces: &[&str]| {
-        let text = format!("(\n materials: {{\"a\": ()}},\n meshes: {{\n  \"m\": [\n   {parts}\n  ],\n }},\n)");
+        let text = format!(
+            "(\n materials: {{\"a\": ()}},\n meshes: {{\n  \"m\": [\n   {parts}\n  ],\n }},\n)"
+        );
         assert_error(open(write(&dir, "x.ron", text)), pieces);
     };
-    error("Bx(material: \"a\")", &["x.ron:5:", "unknown kind 'Bx'", "did you mean 'Box'?"]);
-    error("Sphere(material: \"a\", radus: 1)", &["x.ron:5:", "did you mean 'radius'?"]);
-    error("Sphere(material: \"red\", radius: 1, level: 1)", &["x.ron:5:21", "no material 'red'", "a"]);
+    error(
+        "Bx(material: \"a\")",
+        &["x.ron:5:", "unknown kind 'Bx'", "did you mean 'Box'?"],
+    );
+    error(
+        "Sphere(material: \"a\", radus: 1)",
+        &["x.ron:5:", "did you mean 'radius'?"],
+    );
+    error(
+        "Sphere(material: \"red\", radius: 1, level: 1)",
+        &["x.ron:5:21", "no material 'red'", "a"],
+    );
     error("Group(\"g\")", &["x.ron:5:", "no group 'g'"]);
-    error("Box(material: \"a\", low: (0, 0, 0), high: (1, 1, 1), open: [\"up\"])", &["x.ron:5:", "'up'", "+y"]);
-    error("Sphere(material: \"a\", radius: 1, level: 40)", &["x.ron:4:3", "mesh 'm'", "vertices"]);
-    error("Lathe(material: \"a\", profile: [], sides: 4294967295, rows: 4294967295)", &["x.ron:4:3", "vertices"]);
-    error("Repeat(at: Circle(radius: 1, count: 4294967295), parts: [])", &["x.ron:4:3", "places"]);
-    error("Solid([Sphere(material: \"a\", radius: 1, level: 1)])", &["x.ron:4:3", "boxes and hollows"]);
+    error(
+        "Box(material: \"a\", low: (0, 0, 0), high: (1, 1, 1), open: [\"up\"])",
+        &["x.ron:5:", "'up'", "+y"],
+    );
+    error(
+        "Sphere(material: \"a\", radius: 1, level: 40)",
+        &["x.ron:4:3", "mesh 'm'", "vertices"],
+    );
+    error(
+        "Lathe(material: \"a\", profile: [], sides: 4294967295, rows: 4294967295)",
+        &["x.ron:4:3", "vertices"],
+    );
+    error(
+        "Repeat(at: Circle(radius: 1, count: 4294967295), parts: [])",
+        &["x.ron:4:3", "places"],
+    );
+    error(
+        "Solid([Sphere(material: \"a\", radius: 1, level: 1)])",
+        &["x.ron:4:3", "boxes and hollows"],
+    );
     error("Solid([])", &["x.ron:4:3", "at least one box"]);
-    let deep = (0..20).fold(String::new(), |inner, _| format!("Repeat(parts: [{inner}])"));
+    let deep = (0..20).fold(String::new(), |inner, _| {
+        format!("Repeat(parts: [{inner}])")
+    });
     error(&deep, &["x.ron:4:3", "inside of"]);
     let many = "Repeat(at: Grid(from: (0, 0, 0), steps: [((1, 0, 0), 60000)]), parts: [Seed(1), Seed(2), Seed(3), Seed(4), Seed(5)])";
     error(many, &["x.ron:4:3", "parts"]);
-    error("Box(material: \"a\", low: (0, 0, 0), high: (1e30, 1, 1))", &["x.ron:", "units and scale"]);
+    error(
+        "Box(material: \"a\", low: (0, 0, 0), high: (1e30, 1, 1))",
+        &["x.ron:", "units and scale"],
+    );
     let nested = (0..8).fold(String::new(), |inner, _| {
         format!("Repeat(at: Grid(from: (0, 0, 0), steps: [((1, 0, 0), 60000)]), parts: [{inner}])")
     });
@@ -682,7 +1103,9 @@ fn errors_in_shapes_have_a_place_and_limits_hold() {
     });
     let since = Instant::now();
     error(
-        &format!("Repeat(at: Grid(from: (0, 0, 0), steps: [((99, 0, 0), 8000)]), parts: [Solid([{boxes}])])"),
+        &format!(
+            "Repeat(at: Grid(from: (0, 0, 0), steps: [((99, 0, 0), 8000)]), parts: [Solid([{boxes}])])"
+        ),
         &["x.ron:4:3", "a solid counts by its cells"],
     );
     assert!(since.elapsed().as_secs() < 10, "{:?}", since.elapsed());
@@ -695,11 +1118,20 @@ fn errors_in_shapes_have_a_place_and_limits_hold() {
     let text = format!("(meshes: {{\"m\": []}}, instances: [{entry}, {entry}])");
     assert_error(open(write(&dir, "x.ron", text)), &["x.ron:1:", "instances"]);
     let text = "(groups: {\"g\": [Group(\"g\")]}, meshes: {\"m\": [Group(\"g\")]})";
-    assert_error(open(write(&dir, "x.ron", text)), &["x.ron:1:", "groups inside of"]);
+    assert_error(
+        open(write(&dir, "x.ron", text)),
+        &["x.ron:1:", "groups inside of"],
+    );
     let text = "(materials: {\"a\": (base_color_texture: 0)})";
-    assert_error(open(write(&dir, "x.ron", text)), &["x.ron:1:", "material 'a'", "texture 0 of 0"]);
+    assert_error(
+        open(write(&dir, "x.ron", text)),
+        &["x.ron:1:", "material 'a'", "texture 0 of 0"],
+    );
     let text = "(instances: [(meshes: [\"gone\"])])";
-    assert_error(open(write(&dir, "x.ron", text)), &["x.ron:1:", "no mesh 'gone'"]);
+    assert_error(
+        open(write(&dir, "x.ron", text)),
+        &["x.ron:1:", "no mesh 'gone'"],
+    );
 }
 
 #[test]
@@ -720,16 +1152,30 @@ fn atrium_is_rich_and_moves() {
     let scene = open("atrium").unwrap();
     assert!(scene.triangle_count() >= 60_000);
     let (low, high) = scene.bounds();
-    assert!((high - low).abs_diff_eq(Vec3::new(30.0, 12.0, 14.0), 1.0), "{}", high - low);
+    assert!(
+        (high - low).abs_diff_eq(Vec3::new(30.0, 12.0, 14.0), 1.0),
+        "{}",
+        high - low
+    );
     assert!(scene.cameras.len() >= 3);
     assert!(scene.materials.iter().any(|m| m.alpha_cutoff > 0.0));
     assert!(scene.materials.iter().any(|m| m.metallic > 0.5));
     assert!(scene.materials.iter().any(|m| m.emission != Vec3::ZERO));
     assert!(scene.materials.iter().any(|m| m.normal_texture.is_some()));
-    let actor = scene.instances.iter().position(|i| i.mover.is_some()).unwrap();
-    let (start, later) = (scene.instance_transform(actor, 0.0), scene.instance_transform(actor, 3.0));
+    let actor = scene
+        .instances
+        .iter()
+        .position(|i| i.mover.is_some())
+        .unwrap();
+    let (start, later) = (
+        scene.instance_transform(actor, 0.0),
+        scene.instance_transform(actor, 3.0),
+    );
     assert!(!start.abs_diff_eq(later, 1e-3));
-    assert!(start.abs_diff_eq(scene.instance_transform(actor, 12.0), 1e-4), "it repeats");
+    assert!(
+        start.abs_diff_eq(scene.instance_transform(actor, 12.0), 1e-4),
+        "it repeats"
+    );
 }
 
 #[test]
@@ -753,46 +1199,108 @@ fn scene_file_composes() {
     )"#;
     let scene = open(write(&dir, "both.ron", text)).unwrap();
     assert_eq!(
-        (scene.name.as_str(), scene.triangle_count(), scene.lights.len()),
+        (
+            scene.name.as_str(),
+            scene.triangle_count(),
+            scene.lights.len()
+        ),
         ("both", 34, 4),
         "the box brings a lamp of its own"
     );
-    assert_eq!(scene.cameras.keys().collect::<Vec<_>>(), ["wide", "default"]);
+    assert_eq!(
+        scene.cameras.keys().collect::<Vec<_>>(),
+        ["wide", "default"]
+    );
     assert_near(scene.lights[2].direction, Vec3::NEG_Y, 1e-6);
     // Rotated about y: the quad's x becomes -z.
-    let at = |time: f32| scene.instance_transform(0, time).transform_point3(Vec3::new(2.0, 0.0, 0.0));
+    let at = |time: f32| {
+        scene
+            .instance_transform(0, time)
+            .transform_point3(Vec3::new(2.0, 0.0, 0.0))
+    };
     assert_near(at(0.0), Vec3::new(5.0, 0.0, -4.0), 1e-4);
     assert_near(at(2.0), Vec3::new(-5.0, 4.0, 4.0), 1e-3);
     assert_near(at(6.0), at(2.0), 1e-3);
     let (low, high) = scene.bounds();
-    assert!(high.y >= 9.9 && low.x <= -5.0, "bounds hold all poses: {low} {high}");
+    assert!(
+        high.y >= 9.9 && low.x <= -5.0,
+        "bounds hold all poses: {low} {high}"
+    );
 }
 
 #[test]
 fn scene_file_errors_have_a_place_and_a_hint() {
     let dir = folder();
-    let error = |text: &str, pieces: &[&str]| assert_error(open(write(&dir, "x.ron", text)), pieces);
-    error("(\n  model: [],\n)", &["x.ron:2:", "unknown field 'model'", "did you mean 'models'?"]);
-    error("(models: [\n(builtin: \"atrum\")])", &["x.ron:2:", "did you mean 'atrium'?"]);
-    error("(models: [(file: \"a.obj\", builtin: \"atrium\")])", &["either a file or a builtin"]);
-    error("(models: [\n\n  (file: \"gone.obj\")])", &["x.ron:3:10", "gone.obj", "CONELAB_SCENES"]);
-    error("(lights: [Pint(color: (1,1,1))])", &["x.ron:1:", "did you mean 'Point'?"]);
-    error("(lights: [Point(color: (1,1,1), position: (0,0,0), shadw: true)])", &["did you mean 'shadow'?"]);
-    error("(lights: [Directional(color: (1,1,1), direction: (0,0,0), shadow: true)])", &["not zero"]);
-    error("(cameras: {\"a\": (eye: (0,0,0), target: (0,1,0), fov_y: 60)})", &["up vector"]);
-    error("(cameras: {\"a\": (eye: (0,0,0), target: (1,1,0), fov_y: 0)})", &["between 1 and 170"]);
-    error("(models: [(builtin: \"cornell\", transform: (scale: (0, 1, 1)))])", &["scale above 0"]);
-    error("(models: [(builtin: \"cornell\", animation: (keyframes: [(time: 1), (time: 1)]))])", &["times that rise"]);
-    error("(\n  sky: (0.5, -1, 0.5),\n)", &["x.ron:2:", "finite and 0 or more"]);
+    let error =
+        |text: &str, pieces: &[&str]| assert_error(open(write(&dir, "x.ron", text)), pieces);
+    error(
+        "(\n  model: [],\n)",
+        &[
+            "x.ron:2:",
+            "unknown field 'model'",
+            "did you mean 'models'?",
+        ],
+    );
+    error(
+        "(models: [\n(builtin: \"atrum\")])",
+        &["x.ron:2:", "did you mean 'atrium'?"],
+    );
+    error(
+        "(models: [(file: \"a.obj\", builtin: \"atrium\")])",
+        &["either a file or a builtin"],
+    );
+    error(
+        "(models: [\n\n  (file: \"gone.obj\")])",
+        &["x.ron:3:10", "gone.obj", "CONELAB_SCENES"],
+    );
+    error(
+        "(lights: [Pint(color: (1,1,1))])",
+        &["x.ron:1:", "did you mean 'Point'?"],
+    );
+    error(
+        "(lights: [Point(color: (1,1,1), position: (0,0,0), shadw: true)])",
+        &["did you mean 'shadow'?"],
+    );
+    error(
+        "(lights: [Directional(color: (1,1,1), direction: (0,0,0), shadow: true)])",
+        &["not zero"],
+    );
+    error(
+        "(cameras: {\"a\": (eye: (0,0,0), target: (0,1,0), fov_y: 60)})",
+        &["up vector"],
+    );
+    error(
+        "(cameras: {\"a\": (eye: (0,0,0), target: (1,1,0), fov_y: 0)})",
+        &["between 1 and 170"],
+    );
+    error(
+        "(models: [(builtin: \"cornell\", transform: (scale: (0, 1, 1)))])",
+        &["scale above 0"],
+    );
+    error(
+        "(models: [(builtin: \"cornell\", animation: (keyframes: [(time: 1), (time: 1)]))])",
+        &["times that rise"],
+    );
+    error(
+        "(\n  sky: (0.5, -1, 0.5),\n)",
+        &["x.ron:2:", "finite and 0 or more"],
+    );
     error("(models: [", &["x.ron:1:"]);
-    assert_error(open(dir.path().join("none.ron")), &["none.ron", "Check the path"]);
+    assert_error(
+        open(dir.path().join("none.ron")),
+        &["none.ron", "Check the path"],
+    );
 }
 
 #[test]
 fn scene_folders_are_searched() {
     let dir = folder();
     write(&dir, "store/deep/quad.obj", QUAD);
-    let file = write(&dir, "scenes/x.ron", "(models: [(file: \"deep/quad.obj\")])");
+    let file = write(
+        &dir,
+        "scenes/x.ron",
+        "(models: [(file: \"deep/quad.obj\")])",
+    );
     if let Ok(file) = std::env::var("CONELAB_TEST_SCENE") {
         assert_eq!(open(file).unwrap().triangle_count(), 2);
         return;
@@ -801,10 +1309,17 @@ fn scene_folders_are_searched() {
     let status = std::process::Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "scene_folders_are_searched"])
         .env("CONELAB_TEST_SCENE", file)
-        .env("CONELAB_SCENES", format!("/nowhere:{}", dir.path().join("store").display()))
+        .env(
+            "CONELAB_SCENES",
+            format!("/nowhere:{}", dir.path().join("store").display()),
+        )
         .output()
         .unwrap();
-    assert!(status.status.success(), "{}", String::from_utf8_lossy(&status.stdout));
+    assert!(
+        status.status.success(),
+        "{}",
+        String::from_utf8_lossy(&status.stdout)
+    );
 }
 
 #[test]
@@ -812,12 +1327,20 @@ fn shipped_scene_files_are_valid() {
     let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/scenes");
     let workshop = open(configs.join("workshop.ron")).unwrap();
     assert!(workshop.instances.iter().any(|i| i.mover.is_some()));
-    assert!(workshop.lights.iter().any(|l| matches!(l.kind, LightKind::Spot { .. })));
+    assert!(
+        workshop
+            .lights
+            .iter()
+            .any(|l| matches!(l.kind, LightKind::Spot { .. }))
+    );
     assert!(workshop.lights.iter().any(|l| l.kind == LightKind::Point));
     for name in ["sponza", "living-room"] {
         // Without the model, only the model may be missing.
         if let Err(error) = open(configs.join(format!("{name}.ron"))) {
-            assert!(error.to_string().contains(&format!("{name}/{name}.obj")), "{error}");
+            assert!(
+                error.to_string().contains(&format!("{name}/{name}.obj")),
+                "{error}"
+            );
         }
     }
 }
@@ -845,9 +1368,13 @@ fn a_picture_of_the_sky_is_written_beside_a_gltf_file() {
     let plain = open(dir.path().join("w.gltf")).unwrap();
     assert!(plain.environment.is_none());
     let again = plain.under(&dir.path().join("w.sky.exr")).unwrap();
-    let [before, after] = [&scene, &again].map(|s| s.environment.as_ref().unwrap().picture.texels());
+    let [before, after] =
+        [&scene, &again].map(|s| s.environment.as_ref().unwrap().picture.texels());
     assert!(before == after && again.sky == scene.sky);
-    open("cornell").unwrap().export(&dir.path().join("c.gltf")).unwrap();
+    open("cornell")
+        .unwrap()
+        .export(&dir.path().join("c.gltf"))
+        .unwrap();
     assert!(!dir.path().join("c.sky.exr").exists());
 }
 
@@ -872,13 +1399,20 @@ fn glb_and_gltf_keep_lights_cameras_and_motion() {
         for (name, a) in &scene.cameras {
             let b = &again.cameras[name];
             assert_near(a.eye, b.eye, 1e-5);
-            assert_near((a.target - a.eye).normalize(), (b.target - b.eye).normalize(), 1e-4);
+            assert_near(
+                (a.target - a.eye).normalize(),
+                (b.target - b.eye).normalize(),
+                1e-4,
+            );
             assert!((a.fov_y - b.fov_y).abs() < 1e-3 && a.near == b.near && a.far == b.far);
         }
         let moving = |s: &Scene| s.instances.iter().position(|i| i.mover.is_some()).unwrap();
         for time in [0.0, 0.7, 1.9, 3.3] {
             let a: Mat4 = scene.instance_transform(moving(&scene), time);
-            assert!(a.abs_diff_eq(again.instance_transform(moving(&again), time), 1e-4), "at {time} s");
+            assert!(
+                a.abs_diff_eq(again.instance_transform(moving(&again), time), 1e-4),
+                "at {time} s"
+            );
         }
     }
     let leftovers = std::fs::read_dir(dir.path()).unwrap().filter(|e| {
@@ -892,15 +1426,28 @@ fn glb_and_gltf_keep_lights_cameras_and_motion() {
 fn export_errors_name_the_file() {
     let dir = folder();
     let scene = open("cornell").unwrap();
-    let message = scene.export(&dir.path().join("a.ply")).unwrap_err().to_string();
-    assert!(message.contains("a.ply") && message.contains(".glb"), "{message}");
+    let message = scene
+        .export(&dir.path().join("a.ply"))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("a.ply") && message.contains(".glb"),
+        "{message}"
+    );
     write(&dir, "file", "");
-    let message = scene.export(&dir.path().join("file/a.obj")).unwrap_err().to_string();
+    let message = scene
+        .export(&dir.path().join("file/a.obj"))
+        .unwrap_err()
+        .to_string();
     assert!(message.contains("writable"), "{message}");
 }
 
 fn longest_edge(scene: &Scene) -> f32 {
-    let of = |t: [Vec3; 3]| t[0].distance(t[1]).max(t[1].distance(t[2])).max(t[2].distance(t[0]));
+    let of = |t: [Vec3; 3]| {
+        t[0].distance(t[1])
+            .max(t[1].distance(t[2]))
+            .max(t[2].distance(t[0]))
+    };
     triangles(scene).into_iter().map(of).fold(0.0, f32::max)
 }
 
@@ -941,19 +1488,39 @@ fn splitting_measures_in_the_world_and_has_limits() {
     let split = scene.split_triangles(0.5);
     assert!(longest_edge(&split) <= 0.5 && longest_edge(&split) > 0.2);
     assert!((area(&split) - 20.0).abs() < 1e-3);
-    let uv_of = |s: &Scene| s.meshes[0].vertices.iter().map(|v| v.position[0] - 2.0 * v.uv[0]).fold(0.0, f32::max);
-    assert!(uv_of(&split).abs() < 1e-5, "texture coordinates are interpolated");
+    let uv_of = |s: &Scene| {
+        s.meshes[0]
+            .vertices
+            .iter()
+            .map(|v| v.position[0] - 2.0 * v.uv[0])
+            .fold(0.0, f32::max)
+    };
+    assert!(
+        uv_of(&split).abs() < 1e-5,
+        "texture coordinates are interpolated"
+    );
     for edge in [1e-6, 0.0, f32::NAN] {
         let same = scene.split_triangles(edge);
         assert_eq!(same.triangle_count(), 2);
         assert_warning(&same, &["not split"]);
     }
     // What it takes at least is known before, and never more than what it takes.
-    for (scene, edge) in [(&scene, 0.5), (&scene, 0.05), (&open("triangles").unwrap(), 0.1)] {
+    for (scene, edge) in [
+        (&scene, 0.5),
+        (&scene, 0.05),
+        (&open("triangles").unwrap(), 0.1),
+    ] {
         let split = scene.split_triangles(edge);
-        let bytes = split.meshes.iter().map(|m| size_of_val(m.vertices.as_slice())).sum::<usize>() as f64;
+        let bytes = split
+            .meshes
+            .iter()
+            .map(|m| size_of_val(m.vertices.as_slice()))
+            .sum::<usize>() as f64;
         let least = scene.least_split_bytes(edge);
-        assert!(least <= bytes && least > 0.05 * bytes, "{least} of {bytes} at {edge}");
+        assert!(
+            least <= bytes && least > 0.05 * bytes,
+            "{least} of {bytes} at {edge}"
+        );
     }
     let needles = open("triangles").unwrap().split_triangles(0.1);
     assert!(longest_edge(&needles) <= 0.1001);
@@ -969,7 +1536,8 @@ fn shuffling_permutes_triangles_inside_parts() {
     for (a, b) in scene.meshes.iter().zip(&shuffled.meshes) {
         assert_eq!((&a.vertices, &a.submeshes), (&b.vertices, &b.submeshes));
         for submesh in &a.submeshes {
-            let range = submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
+            let range =
+                submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
             let sorted = |indices: &[u32]| {
                 let mut triangles = indices.as_chunks::<3>().0.to_vec();
                 triangles.sort();
@@ -984,8 +1552,18 @@ fn shuffling_permutes_triangles_inside_parts() {
 fn real_scenes_where_present() {
     let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes");
     for (name, count, low, high) in [
-        ("sponza", 66_445, [-17.40276, -0.90669, -7.79851], [17.41724, 15.65331, 7.80149]),
-        ("living-room", 143_163, [-0.51343, -0.00306, -3.63538], [5.12268, 2.87914, 0.59284]),
+        (
+            "sponza",
+            66_445,
+            [-17.40276, -0.90669, -7.79851],
+            [17.41724, 15.65331, 7.80149],
+        ),
+        (
+            "living-room",
+            143_163,
+            [-0.51343, -0.00306, -3.63538],
+            [5.12268, 2.87914, 0.59284],
+        ),
     ] {
         let path = shared.join(name).join(format!("{name}.obj"));
         if !path.exists() {
@@ -994,13 +1572,32 @@ fn real_scenes_where_present() {
         let scene = open(&path).unwrap();
         let dropped = count - scene.triangle_count();
         assert!(dropped < 200, "{name}: {dropped} of {count} dropped");
-        assert_eq!(scene.warnings.len(), usize::from(dropped > 0), "{:?}", scene.warnings);
+        assert_eq!(
+            scene.warnings.len(),
+            usize::from(dropped > 0),
+            "{:?}",
+            scene.warnings
+        );
         assert_near(scene.bounds().0, Vec3::from(low), 1e-3);
         assert_near(scene.bounds().1, Vec3::from(high), 1e-3);
-        assert_eq!(scene.materials.iter().filter(|m| m.name != "default").count(), 19);
-        let masked = scene.materials.iter().filter(|m| m.alpha_cutoff > 0.0).count();
+        assert_eq!(
+            scene
+                .materials
+                .iter()
+                .filter(|m| m.name != "default")
+                .count(),
+            19
+        );
+        let masked = scene
+            .materials
+            .iter()
+            .filter(|m| m.alpha_cutoff > 0.0)
+            .count();
         assert_eq!(masked, usize::from(name == "living-room"));
-        let centre: DVec3 = triangles(&scene).iter().map(|t| (t[0] + t[1] + t[2]).as_dvec3()).sum();
+        let centre: DVec3 = triangles(&scene)
+            .iter()
+            .map(|t| (t[0] + t[1] + t[2]).as_dvec3())
+            .sum();
         assert!(centre.is_finite());
     }
 }
@@ -1013,14 +1610,26 @@ fn flat_models_open_with_their_front_in_view() {
     let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
     for (right, up) in [(x, y), (-x, y), (z, y), (-z, y), (x, -z), (x, z)] {
         let corners = [-right - up, right - up, right + up, up - right];
-        let lines: String = corners.iter().map(|c| format!("v {} {} {}\n", c.x + 3.0, c.y, c.z)).collect();
+        let lines: String = corners
+            .iter()
+            .map(|c| format!("v {} {} {}\n", c.x + 3.0, c.y, c.z))
+            .collect();
         std::fs::write(&path, lines + "f 1 2 3 4\n").unwrap();
-        let scene = Scene::open(&path.to_string_lossy(), &|_, _| std::ops::ControlFlow::Continue(())).unwrap();
+        let scene = Scene::open(&path.to_string_lossy(), &|_, _| {
+            std::ops::ControlFlow::Continue(())
+        })
+        .unwrap();
         let (_, camera) = scene.cameras.first().unwrap();
         let to_eye = (camera.eye - camera.target).normalize();
-        assert!(to_eye.dot(right.cross(up)) > 0.99, "{right} {up}: seen from {to_eye}");
+        assert!(
+            to_eye.dot(right.cross(up)) > 0.99,
+            "{right} {up}: seen from {to_eye}"
+        );
         // All of the quad, whose half edge is a metre.
         let away = (camera.eye - camera.target).length();
-        assert!(away * (0.5 * camera.fov_y).to_radians().tan() > 1.0, "{right} {up}: {away} m");
+        assert!(
+            away * (0.5 * camera.fov_y).to_radians().tan() > 1.0,
+            "{right} {up}: {away} m"
+        );
     }
 }

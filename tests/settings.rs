@@ -18,8 +18,19 @@ use mutate::Random;
 /// Where nobody says how many.
 const SETTINGS: usize = 10;
 
-const GRAPHS: [&str; 5] = ["rays.ron", "cones.ron", "warps.ron", "temporal.ron", "thesis.ron"];
-const SCENES: [&str; 4] = ["cornell", "furnace", "configs/scenes/workshop.ron", "atrium"];
+const GRAPHS: [&str; 5] = [
+    "rays.ron",
+    "cones.ron",
+    "warps.ron",
+    "temporal.ron",
+    "thesis.ron",
+];
+const SCENES: [&str; 4] = [
+    "cornell",
+    "furnace",
+    "configs/scenes/workshop.ron",
+    "atrium",
+];
 
 /// A picture's light, and its parts.
 const LIGHT: [&str; 4] = ["radiance", "direct", "diffuseIndirect", "specularIndirect"];
@@ -45,8 +56,13 @@ fn in_range(param: &Param, random: &mut Random) -> f64 {
     match random.below(10) {
         0 => low,
         1 => high,
-        _ if low >= 0.0 && high - low > 1000.0 => (low - 1.0 + (high - low + 1.0).powf(at)).clamp(low, high),
-        _ if high - low > 1000.0 => (high + 1.0).powf(at * 2.0 - 1.0).copysign(at - 0.5).clamp(low, high),
+        _ if low >= 0.0 && high - low > 1000.0 => {
+            (low - 1.0 + (high - low + 1.0).powf(at)).clamp(low, high)
+        }
+        _ if high - low > 1000.0 => (high + 1.0)
+            .powf(at * 2.0 - 1.0)
+            .copysign(at - 0.5)
+            .clamp(low, high),
         _ => low + (high - low) * at,
     }
 }
@@ -64,27 +80,52 @@ fn draw(param: &Param, random: &mut Random) -> Value {
 }
 
 /// Renders; what is wrong with the picture, or why there is none.
-fn render(lab: &Lab, graph: &str, scene: &str, settings: &[(&str, &str)]) -> Result<Vec<String>, LabError> {
+fn render(
+    lab: &Lab,
+    graph: &str,
+    scene: &str,
+    settings: &[(&str, &str)],
+) -> Result<Vec<String>, LabError> {
     let mut experiment = common::experiment(scene, (48, 32), &[]);
     experiment.graph = graph.into();
     for (name, value) in settings {
-        let name = conelab::diagnostics::Loc { value: (*name).to_string(), at: Default::default() };
+        let name = conelab::diagnostics::Loc {
+            value: (*name).to_string(),
+            at: Default::default(),
+        };
         experiment.params.push((name, (*value).to_string()));
     }
-    let lights = ["display"].iter().chain(&LIGHT).map(|name| (*name).to_string()).collect();
-    let (mut session, _) = lab.prepare(&experiment, common::scene(&experiment.scene), |_| Ok(lights))?;
+    let lights = ["display"]
+        .iter()
+        .chain(&LIGHT)
+        .map(|name| (*name).to_string())
+        .collect();
+    let (mut session, _) = lab.prepare(&experiment, common::scene(&experiment.scene), |_| {
+        Ok(lights)
+    })?;
     for _ in 0..4 {
         session.frame(1.0 / 60.0)?;
     }
     session.finish()?;
     let mut wrong = lab.gpu.messages();
-    wrong.extend(session.failed_checks()?.into_iter().filter(|check| check.contains("NaN")));
+    wrong.extend(
+        session
+            .failed_checks()?
+            .into_iter()
+            .filter(|check| check.contains("NaN")),
+    );
     // Contributions are not all shown: light itself is looked at too, and where it comes from.
     for name in LIGHT {
         let light = session.texels(name, 0, 0)?.floats();
-        let bad = light.iter().flat_map(|t| &t[..3]).filter(|v| !v.is_finite() || **v < 0.0).count();
+        let bad = light
+            .iter()
+            .flat_map(|t| &t[..3])
+            .filter(|v| !v.is_finite() || **v < 0.0)
+            .count();
         if bad > 0 {
-            wrong.push(format!("{bad} numbers of '{name}' are negative or not finite"));
+            wrong.push(format!(
+                "{bad} numbers of '{name}' are negative or not finite"
+            ));
         }
     }
     Ok(wrong)
@@ -95,9 +136,20 @@ fn no_setting_makes_a_nan() {
     let count = common::number("CONELAB_FUZZ").unwrap_or(SETTINGS);
     let seed = common::number("CONELAB_FUZZ_SEED").unwrap_or(1);
     let lab = lab(root());
-    let home = Workspace { root: root().to_path_buf(), cache: None };
+    let home = Workspace {
+        root: root().to_path_buf(),
+        cache: None,
+    };
     let graphs = GRAPHS.map(|name| {
-        (name, load(&home.graph_path(name), &home.folders()).unwrap().params.offered().cloned().collect::<Vec<_>>())
+        (
+            name,
+            load(&home.graph_path(name), &home.folders())
+                .unwrap()
+                .params
+                .offered()
+                .cloned()
+                .collect::<Vec<_>>(),
+        )
     });
     let (mut refused, mut failed) = (0, 0);
     for i in 0..count {
@@ -107,14 +159,20 @@ fn no_setting_makes_a_nan() {
             file if file.ends_with(".ron") => root().join(file).to_string_lossy().into_owned(),
             built_in => built_in.to_string(),
         };
-        let mut settings = vec![("voxel_dim".to_string(), "48".to_string()), ("shadow_dim".into(), "512".into())];
+        let mut settings = vec![
+            ("voxel_dim".to_string(), "48".to_string()),
+            ("shadow_dim".into(), "512".into()),
+        ];
         for param in params {
             if random.below(2) == 0 {
                 settings.retain(|(name, _)| *name != param.name);
                 settings.push((param.name.clone(), draw(param, &mut random).to_ron()));
             }
         }
-        let settings: Vec<_> = settings.iter().map(|(n, v)| (n.as_str(), v.as_str())).collect();
+        let settings: Vec<_> = settings
+            .iter()
+            .map(|(n, v)| (n.as_str(), v.as_str()))
+            .collect();
         let shown = || format!("{i} (seed {seed}): {graph}, {scene}, {settings:?}");
         match render(&lab, graph, &scene, &settings) {
             Ok(wrong) if wrong.is_empty() => {}
@@ -131,5 +189,8 @@ fn no_setting_makes_a_nan() {
     }
     eprintln!("{count} settings, {refused} refused");
     assert_eq!(failed, 0, "settings with a wrong picture");
-    assert!(refused * 4 <= count, "{refused} of {count} settings were refused");
+    assert!(
+        refused * 4 <= count,
+        "{refused} of {count} settings were refused"
+    );
 }

@@ -26,7 +26,10 @@ fn hills() -> String {
     let mut obj = String::new();
     for (j, i) in (0..=EDGE).flat_map(|j| (0..=EDGE).map(move |i| (j, i))) {
         let (x, z) = (at(i), at(j));
-        let height: f64 = waves.iter().map(|[a, b, p, q, h]| h * (a * x + p).sin() * (b * z + q).sin()).sum();
+        let height: f64 = waves
+            .iter()
+            .map(|[a, b, p, q, h]| h * (a * x + p).sin() * (b * z + q).sin())
+            .sum();
         writeln!(obj, "v {x} {} {z}", 1.2 * height).unwrap();
     }
     for (j, i) in (0..EDGE).flat_map(|j| (0..EDGE).map(move |i| (j, i))) {
@@ -41,7 +44,8 @@ const SUN: &str = "lights: [Directional(name: \"sun\", color: (3, 3, 3), directi
 
 fn hilly(folder: &Path) -> String {
     std::fs::write(folder.join("hills.obj"), hills()).unwrap();
-    let camera = "cameras: { \"default\": (eye: (-1.5, 1.8, 5.5), target: (-1.5, 0, 0), fov_y: 45) }";
+    let camera =
+        "cameras: { \"default\": (eye: (-1.5, 1.8, 5.5), target: (-1.5, 0, 0), fov_y: 45) }";
     format!("(models: [(file: \"hills.obj\")], {SUN}, {camera})")
 }
 
@@ -67,7 +71,9 @@ const SIZE: (u32, u32) = (480, 270);
 fn wrong(scene: &Arc<Scene>, rays: &[[f32; 3]], map: &str) -> Wrong {
     let lab = lab(root());
     let e = experiment("cornell", SIZE, &[("voxel_dim", "16"), ("shadow_map", map)]);
-    let (mut session, _) = lab.prepare(&e, scene.clone(), |_| Ok(vec!["direct".into()])).unwrap();
+    let (mut session, _) = lab
+        .prepare(&e, scene.clone(), |_| Ok(vec!["direct".into()]))
+        .unwrap();
     session.frame(0.0).unwrap();
     session.finish().unwrap();
     let map = floats(&mut session, "direct", 0);
@@ -80,7 +86,9 @@ fn wrong(scene: &Arc<Scene>, rays: &[[f32; 3]], map: &str) -> Wrong {
     let around = |i: usize| {
         let (x, y) = (i % width, i / width);
         let rows = y.saturating_sub(1)..(y + 2).min(height);
-        rows.flat_map(move |y| (x.saturating_sub(1)..(x + 2).min(width)).map(move |x| y * width + x))
+        rows.flat_map(move |y| {
+            (x.saturating_sub(1)..(x + 2).min(width)).map(move |x| y * width + x)
+        })
     };
     Wrong {
         black: count(&|i| map[i][0] == 0.0 && around(i).all(|k| rays[k][0] > 0.05 * brightest)),
@@ -94,7 +102,10 @@ fn traced(scene: &Arc<Scene>) -> Vec<[f32; 3]> {
     let home = home();
     let lab = lab(home.path());
     let e = experiment("cornell", SIZE, &[]);
-    let found = gather(&lab, &e, scene, 1, Goal::Samples(32), &mut |_| ControlFlow::Continue(())).unwrap();
+    let found = gather(&lab, &e, scene, 1, Goal::Samples(32), &mut |_| {
+        ControlFlow::Continue(())
+    })
+    .unwrap();
     assert_clean(&lab);
     found.parts["direct"].mean.rgb.clone()
 }
@@ -105,13 +116,18 @@ fn bent_surfaces_do_not_shadow_themselves() {
     for (name, scene) in [("hills", hilly as fn(&Path) -> String), ("ball", ball)] {
         let path = dir.path().join(format!("{name}.ron"));
         std::fs::write(&path, scene(dir.path())).unwrap();
-        let scene = Arc::new(Scene::open(&path.to_string_lossy(), &|_, _| ControlFlow::Continue(())).unwrap());
+        let scene = Arc::new(
+            Scene::open(&path.to_string_lossy(), &|_, _| ControlFlow::Continue(())).unwrap(),
+        );
         let rays = traced(&scene);
         for map in ["raster", "compute"] {
             let Wrong { black, leaks, dark } = wrong(&scene, &rays, map);
             println!("{name}, {map}: {black} black pixels, {leaks} leaks, {dark} dark");
             assert!(black < 10, "{name}, {map}: {black} black pixels");
-            assert!(leaks * 2000 < dark, "{name}, {map}: {leaks} leaks of {dark}");
+            assert!(
+                leaks * 2000 < dark,
+                "{name}, {map}: {leaks} leaks of {dark}"
+            );
         }
     }
 }

@@ -24,7 +24,11 @@ const SIZE: (u32, u32) = (128, 64);
 fn direction(x: u32, y: u32) -> DVec3 {
     let azimuth = (f64::from(x) + 0.5) / f64::from(SIZE.0) * TAU - PI;
     let polar = (f64::from(y) + 0.5) / f64::from(SIZE.1) * PI;
-    DVec3::new(azimuth.sin() * polar.sin(), polar.cos(), -azimuth.cos() * polar.sin())
+    DVec3::new(
+        azimuth.sin() * polar.sin(),
+        polar.cos(),
+        -azimuth.cos() * polar.sin(),
+    )
 }
 
 fn solid_angle(y: u32) -> f64 {
@@ -36,7 +40,10 @@ type Picture<'a> = &'a dyn Fn(u32, u32) -> [f32; 3];
 
 fn save(path: &Path, picture: Picture) {
     let texels = (0..SIZE.1).flat_map(|y| (0..SIZE.0).flat_map(move |x| picture(x, y)));
-    image::Rgb32FImage::from_raw(SIZE.0, SIZE.1, texels.collect()).unwrap().save(path).unwrap();
+    image::Rgb32FImage::from_raw(SIZE.0, SIZE.1, texels.collect())
+        .unwrap()
+        .save(path)
+        .unwrap();
 }
 
 fn open(path: &Path) -> Result<Scene, SceneError> {
@@ -49,7 +56,11 @@ fn under(folder: &TempDir, models: &str, more: &str, picture: Picture) -> Arc<Sc
     save(&folder.path().join("sky.exr"), picture);
     let path = folder.path().join("scene.ron");
     let camera = "cameras: { \"default\": (eye: (1.5, 3.5, 3), target: (0, 0.3, 0), fov_y: 40) }";
-    std::fs::write(&path, format!("(models: [{models}], environment: (file: \"sky.exr\"{more}), {camera})")).unwrap();
+    std::fs::write(
+        &path,
+        format!("(models: [{models}], environment: (file: \"sky.exr\"{more}), {camera})"),
+    )
+    .unwrap();
     let scene = open(&path).unwrap();
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
     Arc::new(scene)
@@ -70,10 +81,21 @@ fn floor(folder: &TempDir, boxed: bool) -> String {
 
 /// Of the method, where nothing is kept from frame to frame.
 fn session(lab: &Lab, scene: &Arc<Scene>) -> Session {
-    let settings =
-        [("voxel_dim", "32"), ("shadow_dim", "512"), ("bounces", "one"), ("gather_frames", "1"), ("pixel_rays", "4")];
+    let settings = [
+        ("voxel_dim", "32"),
+        ("shadow_dim", "512"),
+        ("bounces", "one"),
+        ("gather_frames", "1"),
+        ("pixel_rays", "4"),
+    ];
     let wanted = ["radiance", "direct"].map(String::from).to_vec();
-    lab.prepare(&experiment(&scene.name, (48, 36), &settings), scene.clone(), |_| Ok(wanted)).unwrap().0
+    lab.prepare(
+        &experiment(&scene.name, (48, 36), &settings),
+        scene.clone(),
+        |_| Ok(wanted),
+    )
+    .unwrap()
+    .0
 }
 
 /// A texture after one more frame.
@@ -87,7 +109,11 @@ fn texture(lab: &Lab, session: &mut Session, name: &str) -> Vec<[f32; 4]> {
 
 #[track_caller]
 fn assert_near(a: &[[f32; 4]], b: &[[f32; 4]], bound: f32) {
-    let off = |(a, b): (&[f32; 4], &[f32; 4])| (0..3).map(|i| (a[i] - b[i]).abs() / (0.05 + b[i])).fold(0.0, f32::max);
+    let off = |(a, b): (&[f32; 4], &[f32; 4])| {
+        (0..3)
+            .map(|i| (a[i] - b[i]).abs() / (0.05 + b[i]))
+            .fold(0.0, f32::max)
+    };
     let worst = a.iter().zip(b).map(off).fold(0.0, f32::max);
     assert!(a.len() == b.len() && worst < bound, "{worst}");
 }
@@ -96,7 +122,15 @@ fn assert_near(a: &[[f32; 4]], b: &[[f32; 4]], bound: f32) {
 fn trace(lab: &Lab, scene: &Arc<Scene>, bounces: u32, samples: u64) -> Reference {
     let keep_on = &mut |_| ControlFlow::Continue(());
     let experiment = experiment(&scene.name, (48, 36), &[]);
-    let reference = gather(lab, &experiment, scene, bounces, Goal::Samples(samples), keep_on).unwrap();
+    let reference = gather(
+        lab,
+        &experiment,
+        scene,
+        bounces,
+        Goal::Samples(samples),
+        keep_on,
+    )
+    .unwrap();
     assert_clean(lab);
     reference
 }
@@ -105,12 +139,15 @@ fn trace(lab: &Lab, scene: &Arc<Scene>, bounces: u32, samples: u64) -> Reference
 fn a_picture_of_one_colour_is_a_uniform_sky() {
     let (lab, folder) = (lab(root()), tempfile::tempdir().unwrap());
     let ball = "(builtin: \"white-sky\", cameras: false)";
-    let pictured = under(&folder, ball, ", intensity: 0.5, rotation: 30", &|_, _| [2.0, 1.0, 0.5]);
+    let pictured = under(&folder, ball, ", intensity: 0.5, rotation: 30", &|_, _| {
+        [2.0, 1.0, 0.5]
+    });
     assert!(pictured.all_lights().is_empty());
     let mut plain = Scene::clone(&pictured);
     (plain.environment, plain.sky) = (None, Vec3::new(1.0, 0.5, 0.25));
     let plain = Arc::new(plain);
-    let [a, b] = [&pictured, &plain].map(|scene| texture(&lab, &mut session(&lab, scene), "radiance"));
+    let [a, b] =
+        [&pictured, &plain].map(|scene| texture(&lab, &mut session(&lab, scene), "radiance"));
     assert_near(&a, &b, 2e-3);
     let mean = |scene: &Arc<Scene>| trace(&lab, scene, 2, 16).parts["total"].mean.mean();
     let (a, b) = (mean(&pictured), mean(&plain));
@@ -122,7 +159,9 @@ fn patches(x: u32, y: u32) -> [f32; 3] {
     if (x, y) == (40, 14) {
         return [3e5, 2.5e5, 2e5];
     }
-    let wave = |a: f32, b: f32| 1.2 + (x as f32 * TAU as f32 / SIZE.0 as f32 * a + b).sin() * (y as f32 * 0.1).sin();
+    let wave = |a: f32, b: f32| {
+        1.2 + (x as f32 * TAU as f32 / SIZE.0 as f32 * a + b).sin() * (y as f32 * 0.1).sin()
+    };
     [wave(1.0, 0.0), wave(2.0, 1.0), wave(3.0, 2.0)]
 }
 
@@ -131,13 +170,22 @@ fn a_turned_picture_is_a_picture_shifted() {
     let (lab, folder) = (lab(root()), tempfile::tempdir().unwrap());
     let floor = floor(&folder, true);
     let turned = under(&folder, &floor, ", rotation: 90", &patches);
-    let shifted = under(&folder, &floor, "", &|x, y| patches((x + SIZE.0 / 4) % SIZE.0, y));
+    let shifted = under(&folder, &floor, "", &|x, y| {
+        patches((x + SIZE.0 / 4) % SIZE.0, y)
+    });
     let [a, b] = [&turned, &shifted].map(|s| s.all_lights());
     assert_eq!((a.len(), a[0].name.as_str()), (1, SUN));
-    assert!(a[0].direction.distance(b[0].direction) < 1e-5 && a[0].color.distance(b[0].color) < 1e-3, "{a:?} {b:?}");
+    assert!(
+        a[0].direction.distance(b[0].direction) < 1e-5 && a[0].color.distance(b[0].color) < 1e-3,
+        "{a:?} {b:?}"
+    );
     assert!(scene_hash(&turned) != scene_hash(&shifted));
     let expected = texture(&lab, &mut session(&lab, &shifted), "radiance");
-    assert_near(&texture(&lab, &mut session(&lab, &turned), "radiance"), &expected, 0.02);
+    assert_near(
+        &texture(&lab, &mut session(&lab, &turned), "radiance"),
+        &expected,
+        0.02,
+    );
     // As it is turned, frames sleep until it is, and wake then.
     let straight = under(&folder, &floor, "", &patches);
     let mut live = session(&lab, &straight);
@@ -145,7 +193,10 @@ fn a_turned_picture_is_a_picture_shifted() {
     let first = texture(&lab, &mut live, "radiance");
     assert!(texture(&lab, &mut live, "radiance") == first);
     live.turn_sky(90.0);
-    assert!(texture(&lab, &mut live, "radiance") == texture(&lab, &mut session(&lab, &turned), "radiance"));
+    assert!(
+        texture(&lab, &mut live, "radiance")
+            == texture(&lab, &mut session(&lab, &turned), "radiance")
+    );
     live.turn_sky(0.0);
     assert!(texture(&lab, &mut live, "radiance") == first);
 }
@@ -175,18 +226,27 @@ fn the_reference_has_the_irradiance_of_small_bright_spots_with_little_noise() {
     };
     let mut scene = under(&folder, &floor, ", rotation: 10", &spots);
     // Without a lobe the floor reflects albedo times irradiance over pi.
-    Arc::make_mut(&mut scene).materials.iter_mut().for_each(|m| m.specular = 0.0);
+    Arc::make_mut(&mut scene)
+        .materials
+        .iter_mut()
+        .for_each(|m| m.specular = 0.0);
     assert_eq!(scene.all_lights().len(), 1);
     let of = |(x, y): (u32, u32), l: f64| l * solid_angle(y) * direction(x, y).y.max(0.0);
     let albedo = f64::from(scene.materials[0].base_color.x);
     let reference = trace(&lab, &scene, 1, 64);
-    for (part, irradiance) in [("diffuse", of(other, 999.99) + 0.01 * PI), ("direct", of(sun, 1099.99))] {
+    for (part, irradiance) in [
+        ("diffuse", of(other, 999.99) + 0.01 * PI),
+        ("direct", of(sun, 1099.99)),
+    ] {
         let (found, noise) = spread(reference.parts[part].mean.rgb.iter().map(|p| p[0]));
         let expected = albedo * irradiance / PI;
         println!("{part}: {found:.5}, by the texels {expected:.5}, noise {noise:.4}");
         // What arrives directly is reflected by the specular lobe too.
         let most = if part == "direct" { 1.1 } else { 1.01 };
-        assert!(found > 0.99 * expected && found < most * expected, "{part}: {found} {expected}");
+        assert!(
+            found > 0.99 * expected && found < most * expected,
+            "{part}: {found} {expected}"
+        );
         // Rays that know nothing of a spot meet it once in some thousand times: at 64 samples their noise is above 5.
         assert!(noise < 0.2, "{part}: {noise}");
     }
@@ -203,11 +263,21 @@ fn the_sun_of_a_picture_casts_shadows_and_the_method_has_the_energy_of_the_refer
     let lit = direct.iter().filter(|p| p[0] > 0.1).count();
     let reference = trace(&lab, &scene, 1, 64);
     let rays = &reference.parts["direct"].mean.rgb;
-    let dark = direct.iter().zip(rays).filter(|(p, r)| p[3] > 0.0 && r[0] == 0.0).count();
+    let dark = direct
+        .iter()
+        .zip(rays)
+        .filter(|(p, r)| p[3] > 0.0 && r[0] == 0.0)
+        .count();
     println!("{lit} lit and {shaded} shaded pixels, {dark} by rays");
-    assert!(lit > 100 && dark > 10 && shaded.abs_diff(dark) * 4 <= dark, "{lit} {shaded} {dark}");
+    assert!(
+        lit > 100 && dark > 10 && shaded.abs_diff(dark) * 4 <= dark,
+        "{lit} {shaded} {dark}"
+    );
     let total = common::floats(&mut method, "radiance", 0);
-    for (name, found) in [("direct", common::mean(&direct)), ("total", common::mean(&total))] {
+    for (name, found) in [
+        ("direct", common::mean(&direct)),
+        ("total", common::mean(&total)),
+    ] {
         let ratio = found / reference.parts[name].mean.mean();
         println!("{name}: energy {ratio:.4}");
         assert!((ratio - 1.0).abs() < 0.04, "{name}: {ratio}");
@@ -219,12 +289,19 @@ fn files_that_are_no_sky_are_told_and_impossible_radiance_is_black() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     let scene_of = |picture: &str| {
-        std::fs::write(path("scene.ron"), format!("(\n    environment: (file: \"{picture}\"),\n)")).unwrap();
+        std::fs::write(
+            path("scene.ron"),
+            format!("(\n    environment: (file: \"{picture}\"),\n)"),
+        )
+        .unwrap();
         open(&path("scene.ron"))
     };
     let wrong = |picture: &str, expected: &str| {
         let message = scene_of(picture).unwrap_err().to_string();
-        assert!(message.contains("scene.ron:2:") && message.contains(picture), "{message}");
+        assert!(
+            message.contains("scene.ron:2:") && message.contains(picture),
+            "{message}"
+        );
         assert!(message.contains(expected), "{message}");
     };
     save(&path("good.exr"), &patches);
@@ -238,14 +315,36 @@ fn files_that_are_no_sky_are_told_and_impossible_radiance_is_black() {
         std::fs::write(path("cut.exr"), &good[..length]).unwrap();
         wrong("cut.exr", "damaged");
     }
-    for size in ["-Y 100000 +X 100000", "-Y 16384 +X 16384", "-Y 0 +X 5", "-Y 64 +X 128"] {
-        std::fs::write(path("huge.hdr"), format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n")).unwrap();
+    for size in [
+        "-Y 100000 +X 100000",
+        "-Y 16384 +X 16384",
+        "-Y 0 +X 5",
+        "-Y 64 +X 128",
+    ] {
+        std::fs::write(
+            path("huge.hdr"),
+            format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n"),
+        )
+        .unwrap();
         wrong("huge.hdr", "");
     }
     image::Rgb32FImage::from_raw(
         2,
         2,
-        vec![f32::NAN, -1.0, 1.0, f32::INFINITY, 2.0, 1e30, 0.0, 0.0, 0.0, 3.0, 4.0, 5.0],
+        vec![
+            f32::NAN,
+            -1.0,
+            1.0,
+            f32::INFINITY,
+            2.0,
+            1e30,
+            0.0,
+            0.0,
+            0.0,
+            3.0,
+            4.0,
+            5.0,
+        ],
     )
     .unwrap()
     .save(path("odd.exr"))
@@ -254,9 +353,22 @@ fn files_that_are_no_sky_are_told_and_impossible_radiance_is_black() {
     println!("{:?}", scene.warnings);
     assert!(scene.warnings.len() == 2 && scene.warnings.iter().all(|w| w.contains("odd.exr")));
     let texels = scene.environment.as_ref().unwrap().picture.texels();
-    assert!(texels[0] == [0.0, 0.0, 1.0] && texels[1][0] == 0.0 && texels[3] == [3.0, 4.0, 5.0], "{texels:?}");
-    image::Rgb32FImage::new(4200, 20).save(path("wide.hdr")).unwrap();
-    assert_eq!(scene_of("wide.hdr").unwrap().environment.unwrap().picture.size(), (4096, 20));
+    assert!(
+        texels[0] == [0.0, 0.0, 1.0] && texels[1][0] == 0.0 && texels[3] == [3.0, 4.0, 5.0],
+        "{texels:?}"
+    );
+    image::Rgb32FImage::new(4200, 20)
+        .save(path("wide.hdr"))
+        .unwrap();
+    assert_eq!(
+        scene_of("wide.hdr")
+            .unwrap()
+            .environment
+            .unwrap()
+            .picture
+            .size(),
+        (4096, 20)
+    );
 }
 
 #[test]
@@ -265,47 +377,108 @@ fn experiments_change_the_picture_and_are_written_with_it() {
     save(&folder.path().join("sky.exr"), &patches);
     let path = folder.path().join("run.ron");
     let read = |more: &str| {
-        Experiment::from_text(&path, &format!("(graph: \"rays.ron\", scene: \"white-sky\",\n    {more}\n)"))
+        Experiment::from_text(
+            &path,
+            &format!("(graph: \"rays.ron\", scene: \"white-sky\",\n    {more}\n)"),
+        )
     };
-    let changed = read("sky: (1, 2, 3), environment: (file: \"sky.exr\", rotation: -90, intensity: 2),").unwrap();
+    let changed =
+        read("sky: (1, 2, 3), environment: (file: \"sky.exr\", rotation: -90, intensity: 2),")
+            .unwrap();
     let lit = changed.adapted(scene("white-sky")).unwrap();
     let environment = lit.environment.as_ref().unwrap();
-    assert_eq!((lit.sky, environment.rotation, environment.picture.size()), (Vec3::new(2.0, 4.0, 6.0), -90.0, SIZE));
+    assert_eq!(
+        (lit.sky, environment.rotation, environment.picture.size()),
+        (Vec3::new(2.0, 4.0, 6.0), -90.0, SIZE)
+    );
     // Once more is no more; and rotation or intensity alone keep the rest.
     assert!(Arc::ptr_eq(&changed.adapted(lit.clone()).unwrap(), &lit));
-    let turned = read("environment: (rotation: 45),").unwrap().adapted(lit.clone()).unwrap();
-    assert_eq!((turned.sky, turned.environment.as_ref().unwrap().rotation), (lit.sky, 45.0));
-    let dimmed = read("environment: (intensity: 0.5),").unwrap().adapted(lit.clone()).unwrap();
-    assert_eq!((dimmed.sky, dimmed.environment.as_ref().unwrap().rotation), (Vec3::splat(0.5), -90.0));
+    let turned = read("environment: (rotation: 45),")
+        .unwrap()
+        .adapted(lit.clone())
+        .unwrap();
+    assert_eq!(
+        (turned.sky, turned.environment.as_ref().unwrap().rotation),
+        (lit.sky, 45.0)
+    );
+    let dimmed = read("environment: (intensity: 0.5),")
+        .unwrap()
+        .adapted(lit.clone())
+        .unwrap();
+    assert_eq!(
+        (dimmed.sky, dimmed.environment.as_ref().unwrap().rotation),
+        (Vec3::splat(0.5), -90.0)
+    );
     let hashes = [&lit, &turned, &dimmed].map(|s| scene_hash(s));
     assert!(hashes[0] != hashes[1] && hashes[0] != hashes[2]);
     // Written, also to another folder, and read back.
-    let defaults =
-        conelab::lab::Workspace { root: root().to_path_buf(), cache: None }.read("rays.ron").unwrap().params.clone();
-    for to in [folder.path().join("again.ron"), folder.path().join("deep/again.ron")] {
+    let defaults = conelab::lab::Workspace {
+        root: root().to_path_buf(),
+        cache: None,
+    }
+    .read("rays.ron")
+    .unwrap()
+    .params
+    .clone();
+    for to in [
+        folder.path().join("again.ron"),
+        folder.path().join("deep/again.ron"),
+    ] {
         write(&changed, &defaults, &to, false).unwrap();
         let found = Experiment::read(&to).unwrap();
         assert_eq!(
-            found.adapted(scene("white-sky")).unwrap().environment.as_ref().unwrap().picture,
+            found
+                .adapted(scene("white-sky"))
+                .unwrap()
+                .environment
+                .as_ref()
+                .unwrap()
+                .picture,
             environment.picture
         );
         // Edited in place.
-        let value = EnvironmentChange { rotation: Some(10.0), ..found.environment.clone().unwrap().value };
-        let edited = Experiment { environment: Some(Loc { value, at: At::default() }), ..found };
+        let value = EnvironmentChange {
+            rotation: Some(10.0),
+            ..found.environment.clone().unwrap().value
+        };
+        let edited = Experiment {
+            environment: Some(Loc {
+                value,
+                at: At::default(),
+            }),
+            ..found
+        };
         write(&edited, &defaults, &to, true).unwrap();
-        assert_eq!(Experiment::read(&to).unwrap().environment.unwrap().value, edited.environment.unwrap().value);
+        assert_eq!(
+            Experiment::read(&to).unwrap().environment.unwrap().value,
+            edited.environment.unwrap().value
+        );
     }
     let message = |more: &str| {
         let read = read(more).map_err(|e| e[0].to_string());
-        read.and_then(|e| e.adapted(scene("white-sky")).map_err(|e| e.to_string())).map(|_| ()).unwrap_err()
+        read.and_then(|e| e.adapted(scene("white-sky")).map_err(|e| e.to_string()))
+            .map(|_| ())
+            .unwrap_err()
     };
     for (more, expected) in [
-        ("environment: (intensity: -1),", "intensity must be finite and 0 or more"),
-        ("environment: (rotation: NaN),", "rotation must be a number of degrees"),
-        ("environment: (rotation: 5),", "scene 'white-sky' has no environment"),
+        (
+            "environment: (intensity: -1),",
+            "intensity must be finite and 0 or more",
+        ),
+        (
+            "environment: (rotation: NaN),",
+            "rotation must be a number of degrees",
+        ),
+        (
+            "environment: (rotation: 5),",
+            "scene 'white-sky' has no environment",
+        ),
         ("environment: (file: \"none.exr\"),", "cannot read it"),
     ] {
         let message = message(more);
-        assert!(message.contains("run.ron:2:") && message.contains(expected), "{message}");
+        assert!(
+            message.contains("run.ron:2:") && message.contains(expected),
+            "{message}"
+        );
     }
 }

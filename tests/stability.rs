@@ -12,7 +12,10 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 fn grey(values: &[f32]) -> Linear {
-    Linear::radiance((values.len() as u32, 1), values.iter().map(|v| [*v; 3]).collect())
+    Linear::radiance(
+        (values.len() as u32, 1),
+        values.iter().map(|v| [*v; 3]).collect(),
+    )
 }
 
 /// A sequence of one pixel as `flicker` takes it: differences to its first frame, and its area.
@@ -27,10 +30,16 @@ fn index_of(sequence: &[f32]) -> f64 {
 #[test]
 fn flicker_index() {
     assert_eq!(index_of(&[0.3; 24]), 0.0);
-    let sine = |a: f32| (0..240).map(|i| 1.0 + a * (std::f32::consts::TAU * i as f32 / 24.0).sin()).collect::<Vec<_>>();
+    let sine = |a: f32| {
+        (0..240)
+            .map(|i| 1.0 + a * (std::f32::consts::TAU * i as f32 / 24.0).sin())
+            .collect::<Vec<_>>()
+    };
     for a in [0.1, 0.5, 1.0] {
         // 24 frames a period: the sum stands for the integral to 1 %.
-        assert!((index_of(&sine(a)) - f64::from(a) / std::f64::consts::PI).abs() < 0.01 * f64::from(a));
+        assert!(
+            (index_of(&sine(a)) - f64::from(a) / std::f64::consts::PI).abs() < 0.01 * f64::from(a)
+        );
     }
     assert!((index_of(&[0.0, 0.0, 0.0, 8.0]) - 0.75).abs() < 1e-12);
     assert_eq!(index_of(&[0.0; 8]), 0.0, "black does not flicker");
@@ -64,14 +73,29 @@ fn step_response() {
         let mut signal = vec![2.0; 3];
         signal.extend((1..200).map(|k| 5.0 - 3.0 * factor.powi(k)));
         let found = step(&signal, 3).unwrap();
-        let expected = if factor == 0.0 { 1 } else { (0.05f64.ln() / factor.ln()).ceil() as usize };
-        assert_eq!((found.frames, found.overshoot < 1e-6), (Some(expected), true), "factor {factor}");
+        let expected = if factor == 0.0 {
+            1
+        } else {
+            (0.05f64.ln() / factor.ln()).ceil() as usize
+        };
+        assert_eq!(
+            (found.frames, found.overshoot < 1e-6),
+            (Some(expected), true),
+            "factor {factor}"
+        );
     }
     let over = step(&[0.0, 0.0, 6.0, 5.5, 5.0, 5.0, 5.0], 2).unwrap();
-    assert_eq!((over.frames, (over.overshoot - 0.2).abs() < 1e-12), (Some(3), true));
+    assert_eq!(
+        (over.frames, (over.overshoot - 0.2).abs() < 1e-12),
+        (Some(3), true)
+    );
     let falls = step(&[4.0, -1.0, 0.0, 0.0], 1).unwrap();
     assert_eq!((falls.frames, falls.overshoot), (Some(2), 0.25));
-    assert_eq!(step(&[0.0, 1.0, 2.0, 3.0, 4.0], 1).unwrap().frames, None, "it has not arrived");
+    assert_eq!(
+        step(&[0.0, 1.0, 2.0, 3.0, 4.0], 1).unwrap().frames,
+        None,
+        "it has not arrived"
+    );
     assert!(step(&[1.0, 1.0, 1.0], 1).is_none(), "nothing changed");
 }
 
@@ -91,20 +115,40 @@ fn suite(home: &Path, methods: &str, cases: &str) -> PathBuf {
 /// Gives a suite a chart.
 fn chart(file: &Path, text: &str) {
     let suite = std::fs::read_to_string(file).unwrap();
-    std::fs::write(file, suite.replacen("methods:", &format!("chart: ({text}),\nmethods:"), 1)).unwrap();
+    std::fs::write(
+        file,
+        suite.replacen("methods:", &format!("chart: ({text}),\nmethods:"), 1),
+    )
+    .unwrap();
 }
 
 fn stability(home: &Path, file: &Path, folder: &str, more: &[&str]) -> Command {
     let mut command = conelab(home);
-    command.arg("stability").arg(file).arg("-o").arg(home.join(folder)).args(more);
+    command
+        .arg("stability")
+        .arg(file)
+        .arg("-o")
+        .arg(home.join(folder))
+        .args(more);
     command
 }
 
 /// A column of a method in a case.
 #[track_caller]
-fn value(table: &[BTreeMap<String, String>], case: &str, method: &str, column: &str) -> Option<f64> {
-    let row = table.iter().find(|r| r["case"] == case && r["method"] == method).unwrap();
-    row.get(column).unwrap_or_else(|| panic!("no column '{column}'")).parse().ok()
+fn value(
+    table: &[BTreeMap<String, String>],
+    case: &str,
+    method: &str,
+    column: &str,
+) -> Option<f64> {
+    let row = table
+        .iter()
+        .find(|r| r["case"] == case && r["method"] == method)
+        .unwrap();
+    row.get(column)
+        .unwrap_or_else(|| panic!("no column '{column}'"))
+        .parse()
+        .ok()
 }
 
 /// Where nothing moves, nothing changes: to the bit, in every part, with and without filters over time.
@@ -113,13 +157,32 @@ fn a_still_scene_is_still() {
     let home = home();
     let methods = "\"uniform\": {}, \"temporal\": { \"graph\": \"temporal.ron\" }, \"tracking\": { \"volume\": \"camera\", \
                    \"volume_size\": (10, 10, 10) }, \"tessellated\": { \"voxelizer\": \"tessellated\" }, \"turns\": { \"gather_frames\": 4 }";
-    let file = suite(home.path(), methods, "\"still\": (), \"yaw\": (motion: Camera(yaw: 1))");
-    succeeds(&mut stability(home.path(), &file, "out", &["--no-reference"]));
+    let file = suite(
+        home.path(),
+        methods,
+        "\"still\": (), \"yaw\": (motion: Camera(yaw: 1))",
+    );
+    succeeds(&mut stability(
+        home.path(),
+        &file,
+        "out",
+        &["--no-reference"],
+    ));
     let table = table(&home.path().join("out/stability.csv"));
     for method in ["uniform", "temporal", "tracking", "tessellated", "turns"] {
         for part in ["total", "direct", "diffuse", "specular", "occlusion"] {
-            for column in ["E_t", "pops", "peak jump /255", "flicker mean", "flicker p99"] {
-                assert_eq!(value(&table, "still", method, &format!("{part} {column}")), Some(0.0), "{method} {part}");
+            for column in [
+                "E_t",
+                "pops",
+                "peak jump /255",
+                "flicker mean",
+                "flicker p99",
+            ] {
+                assert_eq!(
+                    value(&table, "still", method, &format!("{part} {column}")),
+                    Some(0.0),
+                    "{method} {part}"
+                );
             }
         }
         // Without a reference nobody knows how a moving camera's picture should change.
@@ -140,14 +203,26 @@ fn the_reference_as_a_method_is_at_its_own_noise() {
         "\"yaw\": (warmup: 0, motion: Camera(yaw: 0.5)), \"box\": (warmup: 0, motion: Actors(step: 0.1))",
     );
     // There the number of bounces has the name of the method's choice.
-    std::fs::write(&file, std::fs::read_to_string(&file).unwrap().replace(", \"bounces\": \"one\"", "")).unwrap();
+    std::fs::write(
+        &file,
+        std::fs::read_to_string(&file)
+            .unwrap()
+            .replace(", \"bounces\": \"one\"", ""),
+    )
+    .unwrap();
     succeeds(&mut stability(home.path(), &file, "out", &["--spp", "64"]));
     let table = table(&home.path().join("out/stability.csv"));
     for case in ["yaw", "box"] {
         let of = |column: &str| value(&table, case, "path tracer", column).unwrap();
         let ratio = of("diffuse E_t") / of("diffuse E_t noise");
-        assert!((0.5..1.0).contains(&ratio), "{case}: E_t is {ratio} of the noise");
-        assert!(of("direct E_t") < 1e-6, "direct light of lights without extent has no noise");
+        assert!(
+            (0.5..1.0).contains(&ratio),
+            "{case}: E_t is {ratio} of the noise"
+        );
+        assert!(
+            of("direct E_t") < 1e-6,
+            "direct light of lights without extent has no noise"
+        );
         let row = table.iter().find(|r| r["case"] == case).unwrap();
         assert_eq!(row["diffuse told apart"], "no");
         assert!(of("diffuse flicker mean") < of("diffuse flicker noise"));
@@ -163,17 +238,38 @@ fn a_switched_light_arrives_as_late_as_the_filter_says() {
     let cases = "\"on\": (frames: 40, motion: Switch(name: \"lamp\", at: 1, from: 0, to: 1)), \
                  \"off\": (frames: 40, motion: Switch(name: \"lamp\", at: 1, from: 1, to: 0.2))";
     let file = suite(home.path(), methods, cases);
-    succeeds(&mut stability(home.path(), &file, "out", &["--no-reference"]));
+    succeeds(&mut stability(
+        home.path(),
+        &file,
+        "out",
+        &["--no-reference"],
+    ));
     let table = table(&home.path().join("out/stability.csv"));
     for case in ["on", "off"] {
         for (method, factor) in [("none", 0.0f64), ("half", 0.5), ("slow", 0.8)] {
-            let expected = if factor == 0.0 { 1.0 } else { (0.05f64.ln() / factor.ln()).ceil() };
-            assert_eq!(value(&table, case, method, "diffuse convergence frames"), Some(expected), "{case} {method}");
+            let expected = if factor == 0.0 {
+                1.0
+            } else {
+                (0.05f64.ln() / factor.ln()).ceil()
+            };
+            assert_eq!(
+                value(&table, case, method, "diffuse convergence frames"),
+                Some(expected),
+                "{case} {method}"
+            );
             assert!(value(&table, case, method, "diffuse overshoot").unwrap() < 0.01);
-            assert_eq!(value(&table, case, method, "direct convergence frames"), Some(1.0), "the filter is for voxels");
+            assert_eq!(
+                value(&table, case, method, "direct convergence frames"),
+                Some(1.0),
+                "the filter is for voxels"
+            );
         }
         // In turns of eight frames an eighth of the pixels follows each frame: seven leave more than 5 %.
-        assert_eq!(value(&table, case, "turns", "diffuse convergence frames"), Some(8.0), "{case} in turns");
+        assert_eq!(
+            value(&table, case, "turns", "diffuse convergence frames"),
+            Some(8.0),
+            "{case} in turns"
+        );
     }
 }
 
@@ -183,11 +279,26 @@ fn settling_frames() {
     let mut errors = vec![9.0; 3];
     errors.extend((1..200).map(|k| 0.5 + 4.0 * 0.8f64.powi(k)));
     // 4 f^k <= 0.05 * 0.5
-    assert_eq!(settling(&errors, 3), Some((0.05f64 * 0.5 / 4.0).log(0.8).ceil() as usize));
+    assert_eq!(
+        settling(&errors, 3),
+        Some((0.05f64 * 0.5 / 4.0).log(0.8).ceil() as usize)
+    );
     assert_eq!(settling(&[7.0, 1.0, 1.0, 1.0], 1), Some(1));
-    assert_eq!(settling(&[7.0, 1.0, 0.9, 1.0, 1.0], 1), Some(3), "below is not settled either");
-    assert_eq!(settling(&[7.0, 4.0, 3.0, 2.0], 1), None, "it has not arrived");
-    assert_eq!(settling(&[7.0, f64::NAN, 1.0, 1.0], 1), None, "nobody knows");
+    assert_eq!(
+        settling(&[7.0, 1.0, 0.9, 1.0, 1.0], 1),
+        Some(3),
+        "below is not settled either"
+    );
+    assert_eq!(
+        settling(&[7.0, 4.0, 3.0, 2.0], 1),
+        None,
+        "it has not arrived"
+    );
+    assert_eq!(
+        settling(&[7.0, f64::NAN, 1.0, 1.0], 1),
+        None,
+        "nobody knows"
+    );
     assert_eq!(settling(&[7.0, 0.0, 0.0], 1), Some(1));
 }
 
@@ -207,32 +318,53 @@ fn a_cut_and_a_path() {
     );
     let file = suite(home.path(), methods, &cases);
     succeeds(&mut stability(home.path(), &file, "out", &[]));
-    let references = std::fs::read_dir(home.path().join("captures/reference")).unwrap().count();
+    let references = std::fs::read_dir(home.path().join("captures/reference"))
+        .unwrap()
+        .count();
     // The path ends after a second, at its last key: two of its three frames are one picture.
     assert_eq!(references, 2 + 2);
     let results = table(&home.path().join("out/stability.csv"));
-    assert_eq!(value(&results, "cut", "uniform", "diffuse settling frames"), Some(1.0));
-    assert_eq!(value(&results, "cut", "uniform", "diffuse convergence frames"), None, "another view is no step");
-    assert_eq!(value(&results, "path", "uniform", "diffuse settling frames"), None);
+    assert_eq!(
+        value(&results, "cut", "uniform", "diffuse settling frames"),
+        Some(1.0)
+    );
+    assert_eq!(
+        value(&results, "cut", "uniform", "diffuse convergence frames"),
+        None,
+        "another view is no step"
+    );
+    assert_eq!(
+        value(&results, "path", "uniform", "diffuse settling frames"),
+        None
+    );
     let frames = table(&home.path().join("out/frames.csv"));
     let change = |method: &str, frame: &str| {
         let is = |r: &&BTreeMap<String, String>| {
-            [&*r["case"], &*r["method"], &*r["part"], &*r["frame"]] == ["cut", method, "diffuse", frame]
+            [&*r["case"], &*r["method"], &*r["part"], &*r["frame"]]
+                == ["cut", method, "diffuse", frame]
         };
-        frames.iter().find(is).unwrap()["E_t"].parse::<f64>().unwrap()
+        frames.iter().find(is).unwrap()["E_t"]
+            .parse::<f64>()
+            .unwrap()
     };
     // The third frame is the first after the cut.
     assert_eq!(change("uniform", "3"), 0.0);
     let faded = ["3", "24"].map(|frame| change("filtered", frame));
     // 18.9 on an NVIDIA H200.
     let least = if common::on_software() { 20.0 } else { 15.0 };
-    assert!(faded[0] > least * faded[1], "what was kept does not fade: {faded:?}");
+    assert!(
+        faded[0] > least * faded[1],
+        "what was kept does not fade: {faded:?}"
+    );
     let changes: Vec<f64> = frames
         .iter()
         .filter(|r| r["case"] == "path" && r["method"] == "uniform" && r["part"] == "total")
         .filter_map(|r| r["reference mean luminance"].parse().ok())
         .collect();
-    assert!(changes[0] != changes[1] && changes[1] == changes[2], "{changes:?}");
+    assert!(
+        changes[0] != changes[1] && changes[1] == changes[2],
+        "{changes:?}"
+    );
 }
 
 /// What moves makes references of its own, and what stands still shares them: 2 frames each of camera, actor and light that
@@ -242,15 +374,35 @@ fn references_know_what_moved() {
     let home = home();
     let cases = "\"camera\": (motion: Camera(strafe: 0.1)), \"actor\": (motion: Actors(step: 0.2)), \
                  \"light\": (motion: Light(name: \"lamp\", shift: (0, -0.1, 0))), \"still\": ()";
-    let file = suite(home.path(), "\"uniform\": {}, \"warped\": { \"warp\": \"spline\" }", cases);
-    succeeds(&mut stability(home.path(), &file, "out", &["--frames", "2"]));
-    let kept = || std::fs::read_dir(home.path().join("captures/reference")).unwrap().count();
+    let file = suite(
+        home.path(),
+        "\"uniform\": {}, \"warped\": { \"warp\": \"spline\" }",
+        cases,
+    );
+    succeeds(&mut stability(
+        home.path(),
+        &file,
+        "out",
+        &["--frames", "2"],
+    ));
+    let kept = || {
+        std::fs::read_dir(home.path().join("captures/reference"))
+            .unwrap()
+            .count()
+    };
     assert_eq!(kept(), 4);
     let page = std::fs::read_to_string(home.path().join("out/index.html")).unwrap();
-    let pictures: Vec<_> =
-        std::fs::read_dir(home.path().join("out/pictures")).unwrap().map(|e| e.unwrap().file_name()).collect();
+    let pictures: Vec<_> = std::fs::read_dir(home.path().join("out/pictures"))
+        .unwrap()
+        .map(|e| e.unwrap().file_name())
+        .collect();
     assert_eq!(pictures.len(), 8);
-    assert!(pictures.iter().all(|p| page.contains(&*p.to_string_lossy())), "every worst frame is named in the page");
+    assert!(
+        pictures
+            .iter()
+            .all(|p| page.contains(&*p.to_string_lossy())),
+        "every worst frame is named in the page"
+    );
 }
 
 /// A volume that moves while pixels stand still: there the reference's change is 0 to the bit and no reference is
@@ -268,10 +420,17 @@ fn a_parameter_moves() {
                  \"back\": (warmup: 2, frames: 3, motion: Parameter(name: \"volume_offset\", values: [(0, 0, 0), (0.5, 0, 0), (0, 0, 0)])), \
                  \"raised\": (frames: 3, motion: Parameter(name: \"bias\", values: [1, 4, 4]))";
     let file = suite(home.path(), &methods, cases);
-    succeeds(&mut stability(home.path(), &file, "out", &["--no-reference"]));
+    succeeds(&mut stability(
+        home.path(),
+        &file,
+        "out",
+        &["--no-reference"],
+    ));
     let frames = table(&home.path().join("out/frames.csv"));
     let of = |case: &str, method: &str, column: &str| -> Vec<f64> {
-        let own = frames.iter().filter(|r| r["case"] == case && r["method"] == method && r["part"] == "diffuse");
+        let own = frames
+            .iter()
+            .filter(|r| r["case"] == case && r["method"] == method && r["part"] == "diffuse");
         own.filter_map(|r| r[column].parse().ok()).collect()
     };
     let jumps = of("volume", "snapped", "peak jump /255");
@@ -279,12 +438,22 @@ fn a_parameter_moves() {
     // 33 cm on the way: past one border, or two.
     let moved = jumps.iter().filter(|j| **j > 0.0).count();
     assert!((1..=2).contains(&moved), "{jumps:?}");
-    assert!(of("volume", "free", "peak jump /255").iter().all(|j| *j > 0.0));
+    assert!(
+        of("volume", "free", "peak jump /255")
+            .iter()
+            .all(|j| *j > 0.0)
+    );
     for method in ["snapped", "free"] {
         let back = of("back", method, "mean luminance");
-        assert!(back[0] == back[2] && back[0] != back[1], "{method} is where it was: {back:?}");
+        assert!(
+            back[0] == back[2] && back[0] != back[1],
+            "{method} is where it was: {back:?}"
+        );
         let raised = of("raised", method, "mean luminance");
-        assert!(raised[1] != raised[0] && raised[1] == raised[2], "{method}: {raised:?}");
+        assert!(
+            raised[1] != raised[0] && raised[1] == raised[2],
+            "{method}: {raised:?}"
+        );
     }
 }
 
@@ -300,19 +469,47 @@ fn a_parameter_that_references_have_too() {
     };
     let declared = "params: [\n        Float(name: \"mirrored\", default: 1.0, help: \"Scales reflectance.\"),";
     edit("passes/parts/surface.ron", "params: [", declared);
-    edit("shaders/common/brdf.glsl", "vec3 f0 = mix(", "vec3 f0 = params.mirrored * mix(");
+    edit(
+        "shaders/common/brdf.glsl",
+        "vec3 f0 = mix(",
+        "vec3 f0 = params.mirrored * mix(",
+    );
     let cases = "\"lobe\": (warmup: 0, frames: 3, motion: Parameter(name: \"mirrored\", values: [1, 0.5, 0.5]))";
-    let file = suite(home.path(), "\"a\": { \"scene\": \"configs/stability/scenes/metal-rough.ron\" }", cases);
+    let file = suite(
+        home.path(),
+        "\"a\": { \"scene\": \"configs/stability/scenes/metal-rough.ron\" }",
+        cases,
+    );
     succeeds(&mut stability(home.path(), &file, "out", &[]));
-    let references = std::fs::read_dir(home.path().join("captures/reference")).unwrap().count();
+    let references = std::fs::read_dir(home.path().join("captures/reference"))
+        .unwrap()
+        .count();
     assert_eq!(references, 2);
     let frames = table(&home.path().join("out/frames.csv"));
     let own = frames.iter().filter(|r| r["part"] == "specular");
-    let reference: Vec<&str> = own.map(|r| r["reference mean luminance"].as_str()).collect();
-    assert!(reference[0] != reference[1] && reference[1] == reference[2], "{reference:?}");
+    let reference: Vec<&str> = own
+        .map(|r| r["reference mean luminance"].as_str())
+        .collect();
+    assert!(
+        reference[0] != reference[1] && reference[1] == reference[2],
+        "{reference:?}"
+    );
     // Without references nobody knows the reference's change.
-    succeeds(&mut stability(home.path(), &file, "none", &["--no-reference"]));
-    assert_eq!(value(&table(&home.path().join("none/stability.csv")), "lobe", "a", "total E_t"), None);
+    succeeds(&mut stability(
+        home.path(),
+        &file,
+        "none",
+        &["--no-reference"],
+    ));
+    assert_eq!(
+        value(
+            &table(&home.path().join("none/stability.csv")),
+            "lobe",
+            "a",
+            "total E_t"
+        ),
+        None
+    );
 }
 
 /// Two panels: methods as they are, and one whose voxels were made so many that it is as fast as the first. A
@@ -320,7 +517,8 @@ fn a_parameter_that_references_have_too() {
 #[test]
 fn equal_cost() {
     let home = home();
-    let methods = "\"first\": {}, \"large\": { \"voxel_dim\": 64 }, \"fitted\": { \"warp\": \"spline\" }";
+    let methods =
+        "\"first\": {}, \"large\": { \"voxel_dim\": 64 }, \"fitted\": { \"warp\": \"spline\" }";
     let file = suite(
         home.path(),
         methods,
@@ -337,45 +535,95 @@ fn equal_cost() {
     let costs = table(&home.path().join("out/cost.csv"));
     let results = table(&home.path().join("out/stability.csv"));
     let groups: Vec<&str> = costs.iter().map(|r| r["group"].as_str()).collect();
-    assert_eq!(groups, ["as they are", "as they are", "equal time", "equal time"]);
-    let cell = |method: &str, column: &str| costs.iter().find(|r| r["method"] == method).unwrap()[column].clone();
+    assert_eq!(
+        groups,
+        ["as they are", "as they are", "equal time", "equal time"]
+    );
+    let cell = |method: &str, column: &str| {
+        costs.iter().find(|r| r["method"] == method).unwrap()[column].clone()
+    };
     let number = |method: &str, column: &str| cell(method, column).parse::<f64>().unwrap();
     // The chart's values are those of the cases.
-    assert_eq!(number("large", "diffuse relMSE"), value(&results, "still", "large", "diffuse relMSE").unwrap());
+    assert_eq!(
+        number("large", "diffuse relMSE"),
+        value(&results, "still", "large", "diffuse relMSE").unwrap()
+    );
     let moving = ["strafe", "yaw"].map(|c| value(&results, c, "large", "diffuse E_t").unwrap());
-    assert!((number("large", "diffuse E_t") - ((moving[0].powi(2) + moving[1].powi(2)) / 2.0).sqrt()).abs() < 1e-12);
+    assert!(
+        (number("large", "diffuse E_t") - ((moving[0].powi(2) + moving[1].powi(2)) / 2.0).sqrt())
+            .abs()
+            < 1e-12
+    );
     // Queues of threads, which draw on hardware, are as large for any grid.
     let times = if common::on_software() { 4.0 } else { 1.0 };
     assert!(number("large", "memory MiB") > times * number("first", "memory MiB"));
-    assert!(value(&results, "still", "large", "memory MiB").unwrap() >= number("large", "memory MiB"));
+    assert!(
+        value(&results, "still", "large", "memory MiB").unwrap() >= number("large", "memory MiB")
+    );
     // The two values next to the first method's time were timed, the nearer was taken, and the cases ran with it.
     let json: serde_json::Value = serde_json::from_str(&out("stability.json")).unwrap();
-    let fitted = json["costs"].as_array().unwrap().iter().find(|c| c["method"] == "fitted").unwrap();
+    let fitted = json["costs"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|c| c["method"] == "fitted")
+        .unwrap();
     let median = |list: &serde_json::Value, first: &serde_json::Value| {
-        let pairs = list.as_array().unwrap().iter().zip(first.as_array().unwrap());
-        let mut ratios: Vec<f64> = pairs.map(|(a, b)| a.as_f64().unwrap() / b.as_f64().unwrap()).collect();
+        let pairs = list
+            .as_array()
+            .unwrap()
+            .iter()
+            .zip(first.as_array().unwrap());
+        let mut ratios: Vec<f64> = pairs
+            .map(|(a, b)| a.as_f64().unwrap() / b.as_f64().unwrap())
+            .collect();
         ratios.sort_by(f64::total_cmp);
         ratios[ratios.len() / 2]
     };
     let candidates = fitted["candidates"].as_array().unwrap();
-    let timed: Vec<usize> = (0..3).filter(|i| !candidates[*i]["ms"].as_array().unwrap().is_empty()).collect();
+    let timed: Vec<usize> = (0..3)
+        .filter(|i| !candidates[*i]["ms"].as_array().unwrap().is_empty())
+        .collect();
     assert!(timed == [0, 1] || timed == [1, 2], "{timed:?}");
-    let off = |i: usize| median(&candidates[i]["ms"], &candidates[i]["first_ms"]).ln().abs();
+    let off = |i: usize| {
+        median(&candidates[i]["ms"], &candidates[i]["first_ms"])
+            .ln()
+            .abs()
+    };
     let chosen = fitted["chosen"].as_u64().unwrap() as usize;
-    assert!(timed.contains(&chosen) && timed.iter().all(|i| off(*i) >= off(chosen)), "{timed:?}, chosen {chosen}");
-    assert_eq!(cell("fitted", "setting"), format!("voxel_dim = {}", [16, 48, 96][chosen]));
-    let sizes = [16u64, 48, 96].map(|d| d.pow(3)).into_iter().collect::<Vec<_>>();
+    assert!(
+        timed.contains(&chosen) && timed.iter().all(|i| off(*i) >= off(chosen)),
+        "{timed:?}, chosen {chosen}"
+    );
+    assert_eq!(
+        cell("fitted", "setting"),
+        format!("voxel_dim = {}", [16, 48, 96][chosen])
+    );
+    let sizes = [16u64, 48, 96]
+        .map(|d| d.pow(3))
+        .into_iter()
+        .collect::<Vec<_>>();
     let memory = |i: usize| candidates[i]["memory_bytes"].as_u64().unwrap();
     let (a, b) = (timed[0], timed[1]);
-    assert!(memory(b) - memory(a) > 4 * (sizes[b] - sizes[a]), "bytes grow with the voxels");
+    assert!(
+        memory(b) - memory(a) > 4 * (sizes[b] - sizes[a]),
+        "bytes grow with the voxels"
+    );
     let svg = out("charts/cost.svg");
-    assert!(["as they are", "equal time", "first", "large", "fitted"].iter().all(|t| svg.contains(t)));
+    assert!(
+        ["as they are", "equal time", "first", "large", "fitted"]
+            .iter()
+            .all(|t| svg.contains(t))
+    );
     assert!(out("index.html").contains(&svg) && out("index.html").contains("What stability costs"));
     // What was chosen is taken again.
     let before = ["cost.json", "cost.csv", "charts/cost.svg", "stability.json"].map(out);
     let message = succeeds(&mut stability(home.path(), &file, "out", &[]));
     assert!(message.contains("9 done, 0 failed"), "{message}");
-    assert_eq!(before, ["cost.json", "cost.csv", "charts/cost.svg", "stability.json"].map(out));
+    assert_eq!(
+        before,
+        ["cost.json", "cost.csv", "charts/cost.svg", "stability.json"].map(out)
+    );
 }
 
 /// Killed as soon as something is finished and started again: what was finished stays, and the tables are those of a run
@@ -383,17 +631,25 @@ fn equal_cost() {
 #[test]
 fn killed_and_continued() {
     let home = home();
-    let methods = "\"a\": {}, \"b\": { \"graph\": \"temporal.ron\" }, \"c\": { \"warp\": \"spline\" }";
+    let methods =
+        "\"a\": {}, \"b\": { \"graph\": \"temporal.ron\" }, \"c\": { \"warp\": \"spline\" }";
     let cases = "\"still\": (), \"yaw\": (motion: Camera(yaw: 0.5)), \"on\": (frames: 6, motion: Switch(name: \"lamp\", at: 1, from: 0, to: 1))";
     let file = suite(home.path(), methods, cases);
     let results = home.path().join("out/results");
     let finished = || -> BTreeMap<String, Vec<u8>> {
         let entries = std::fs::read_dir(&results).into_iter().flatten().flatten();
-        let named = entries.map(|e| e.file_name().to_string_lossy().into_owned()).filter(|n| !n.starts_with('.'));
-        named.map(|n| (n.clone(), std::fs::read(results.join(&n)).unwrap())).collect()
+        let named = entries
+            .map(|e| e.file_name().to_string_lossy().into_owned())
+            .filter(|n| !n.starts_with('.'));
+        named
+            .map(|n| (n.clone(), std::fs::read(results.join(&n)).unwrap()))
+            .collect()
     };
-    let mut child =
-        stability(home.path(), &file, "out", &[]).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+    let mut child = stability(home.path(), &file, "out", &[])
+        .stderr(Stdio::null())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
     let begun = Instant::now();
     while finished().len() < 2 && begun.elapsed() < Duration::from_secs(300) {
         std::thread::sleep(Duration::from_millis(5));
@@ -401,15 +657,28 @@ fn killed_and_continued() {
     child.kill().unwrap();
     child.wait().unwrap();
     let before = finished();
-    assert!((2..9).contains(&before.len()), "{} of 9 were finished", before.len());
+    assert!(
+        (2..9).contains(&before.len()),
+        "{} of 9 were finished",
+        before.len()
+    );
     let message = succeeds(&mut stability(home.path(), &file, "out", &[]));
-    assert!(message.contains(&format!("{} are finished already", before.len())), "{message}");
+    assert!(
+        message.contains(&format!("{} are finished already", before.len())),
+        "{message}"
+    );
     let after = finished();
     assert_eq!(after.len(), 9);
-    assert!(before.iter().all(|(name, bytes)| after[name] == *bytes), "what was finished is kept as it was");
+    assert!(
+        before.iter().all(|(name, bytes)| after[name] == *bytes),
+        "what was finished is kept as it was"
+    );
     succeeds(&mut stability(home.path(), &file, "whole", &[]));
     for name in ["stability.csv", "frames.csv"] {
-        assert_eq!(table(&home.path().join("out").join(name)), table(&home.path().join("whole").join(name)));
+        assert_eq!(
+            table(&home.path().join("out").join(name)),
+            table(&home.path().join("whole").join(name))
+        );
     }
 }
 
@@ -421,31 +690,72 @@ fn a_sheet_of_failures() {
     let cases = "\"still\": (frames: 1, variants: { \"lit\": {}, \"dark\": { \"sky\": (0, 0, 0) } }), \"strafe\": (motion: Camera(strafe: 0.2))";
     let file = suite(home.path(), methods, cases);
     let text = std::fs::read_to_string(&file).unwrap();
-    std::fs::write(&file, text.replacen("methods:", "pictures: \"diffuse\", methods:", 1)).unwrap();
+    std::fs::write(
+        &file,
+        text.replacen("methods:", "pictures: \"diffuse\", methods:", 1),
+    )
+    .unwrap();
     let picture = home.path().join("failures.jpg");
-    let message = succeeds(&mut stability(home.path(), &file, "out", &["--sheet", picture.to_str().unwrap()]));
+    let message = succeeds(&mut stability(
+        home.path(),
+        &file,
+        "out",
+        &["--sheet", picture.to_str().unwrap()],
+    ));
     let bytes = std::fs::read(&picture).unwrap();
     assert!(bytes.len() < 200_000, "{} bytes", bytes.len());
     let sheet = image::load_from_memory(&bytes).unwrap().to_luma8();
-    let rows: Vec<Vec<&str>> =
-        message.lines().filter(|l| l.starts_with("| ")).skip(1).map(|l| l.split(" | ").collect()).collect();
+    let rows: Vec<Vec<&str>> = message
+        .lines()
+        .filter(|l| l.starts_with("| "))
+        .skip(1)
+        .map(|l| l.split(" | ").collect())
+        .collect();
     let names: Vec<(&str, &str)> = rows.iter().map(|r| (r[0], &r[2][..5])).collect();
-    assert_eq!(names, [("| fine", "relMS"), ("| fine", "E_t o"), ("| coarse", "relMS"), ("| coarse", "E_t o")]);
+    assert_eq!(
+        names,
+        [
+            ("| fine", "relMS"),
+            ("| fine", "E_t o"),
+            ("| coarse", "relMS"),
+            ("| coarse", "E_t o")
+        ]
+    );
     // The number is the largest of the method's cases of one frame.
     let results = table(&home.path().join("out/stability.csv"));
-    let errors = results.iter().filter(|r| r["method"] == "coarse" && r["case"] == "still");
+    let errors = results
+        .iter()
+        .filter(|r| r["method"] == "coarse" && r["case"] == "still");
     let worst = errors
-        .max_by(|a, b| a["diffuse relMSE"].parse::<f64>().unwrap().total_cmp(&b["diffuse relMSE"].parse().unwrap()))
+        .max_by(|a, b| {
+            a["diffuse relMSE"]
+                .parse::<f64>()
+                .unwrap()
+                .total_cmp(&b["diffuse relMSE"].parse().unwrap())
+        })
         .unwrap();
     assert_eq!(rows[2][1], format!("still: {}", worst["variant"]));
     // Four rows of 180 pixels below the head, with text on the left of each.
-    assert_eq!((sheet.width(), sheet.height()), (250 + 3 * 248 + 16, 22 + 8 + 4 * 188));
+    assert_eq!(
+        (sheet.width(), sheet.height()),
+        (250 + 3 * 248 + 16, 22 + 8 + 4 * 188)
+    );
     for row in 0..4 {
         let dark = (0..70).flat_map(|y| (8..250).map(move |x| (x, 22 + 188 * row + y)));
-        let dark = dark.filter(|(x, y)| sheet.get_pixel(*x, *y).0[0] < 128).count();
-        assert!((200..4000).contains(&dark), "row {row}: {dark} dark pixels of text");
+        let dark = dark
+            .filter(|(x, y)| sheet.get_pixel(*x, *y).0[0] < 128)
+            .count();
+        assert!(
+            (200..4000).contains(&dark),
+            "row {row}: {dark} dark pixels of text"
+        );
     }
-    let wrong = fails(&mut stability(home.path(), &file, "out", &["--sheet", "failures.gif"]));
+    let wrong = fails(&mut stability(
+        home.path(),
+        &file,
+        "out",
+        &["--sheet", "failures.gif"],
+    ));
     assert!(wrong.contains(".jpg"), "{wrong}");
 }
 
@@ -459,50 +769,112 @@ fn shipped_suites() {
         assert!(Suite::read(&path).unwrap().cases.len() >= 4);
         succeeds(conelab(home.path()).arg("check").arg(path));
     }
-    let small = ["--size", "24x18", "--frames", "2", "--spp", "32", "--set", "voxel_dim=24", "--set", "shadow_dim=256"];
-    let small = [&small[..], &["--set", "bounces=one", "--set", "gather_frames=1"]].concat();
+    let small = [
+        "--size",
+        "24x18",
+        "--frames",
+        "2",
+        "--spp",
+        "32",
+        "--set",
+        "voxel_dim=24",
+        "--set",
+        "shadow_dim=256",
+    ];
+    let small = [
+        &small[..],
+        &["--set", "bounces=one", "--set", "gather_frames=1"],
+    ]
+    .concat();
     // All rays in each frame: only the temporal filter, which must rest where nothing moves, needs many before those measured.
     let all = |suite: &str, more: &[&str]| {
-        let text = std::fs::read_to_string(root().join(format!("configs/stability/{suite}.ron"))).unwrap();
+        let text =
+            std::fs::read_to_string(root().join(format!("configs/stability/{suite}.ron"))).unwrap();
         let at_root = |text: String, name: &str| {
-            text.replace(&format!("../{name}"), &root().join("configs").join(name).to_string_lossy())
+            text.replace(
+                &format!("../{name}"),
+                &root().join("configs").join(name).to_string_lossy(),
+            )
         };
         let text = at_root(at_root(text, "rays.ron"), "cones.ron");
         let (head, cases) = text.split_once("cases: {").unwrap();
-        let head = ["warmup: 32,", "warmup: 40,"].iter().fold(head.to_string(), |t, w| t.replace(w, "warmup: 2,"));
+        let head = ["warmup: 32,", "warmup: 40,"]
+            .iter()
+            .fold(head.to_string(), |t, w| t.replace(w, "warmup: 2,"));
         let file = home.path().join(format!("{suite}.ron"));
         let cases = cases.replace("\"still\": (", "\"still\": (warmup: 32, ");
         std::fs::write(&file, format!("{head}cases: {{{cases}")).unwrap();
-        succeeds(&mut stability(home.path(), &file, suite, &[&small[..], more].concat()));
+        succeeds(&mut stability(
+            home.path(),
+            &file,
+            suite,
+            &[&small[..], more].concat(),
+        ));
         let rows = table(&home.path().join(suite).join("stability.csv"));
-        assert!(rows.iter().all(|r| r["error"].is_empty()), "{suite}: {rows:?}");
+        assert!(
+            rows.iter().all(|r| r["error"].is_empty()),
+            "{suite}: {rows:?}"
+        );
         rows
     };
     all("motion", &["--methods", "tracking,temporal"]);
     let motion = all("motion", &["--only", "still,turn"]);
     let number = |r: &BTreeMap<String, String>, column: &str| r[column].parse::<f64>().unwrap();
     for row in motion.iter().filter(|r| r["case"] == "still") {
-        assert_eq!(number(row, "total E_t"), 0.0, "{}: nothing moves", row["method"]);
+        assert_eq!(
+            number(row, "total E_t"),
+            0.0,
+            "{}: nothing moves",
+            row["method"]
+        );
     }
     // Pixels stand still there, so that no reference's noise is in the numbers.
     let turned = |method: &str| {
-        number(motion.iter().find(|r| r["case"] == "turn" && r["method"] == method).unwrap(), "diffuse E_t")
+        number(
+            motion
+                .iter()
+                .find(|r| r["case"] == "turn" && r["method"] == method)
+                .unwrap(),
+            "diffuse E_t",
+        )
     };
     let changes = ["spherical warp", "perspective warp"].map(turned);
-    assert!(changes[0] < changes[1], "cells that do not turn with the camera flicker less: {changes:?}");
+    assert!(
+        changes[0] < changes[1],
+        "cells that do not turn with the camera flicker less: {changes:?}"
+    );
 
     let file = root().join("configs/stability/failures.ron");
-    let more = ["--size", "40x30", "--spp", "32", "--set", "voxel_dim=32", "--only", "volume off the scene,thin walls"];
+    let more = [
+        "--size",
+        "40x30",
+        "--spp",
+        "32",
+        "--set",
+        "voxel_dim=32",
+        "--only",
+        "volume off the scene,thin walls",
+    ];
     succeeds(&mut stability(home.path(), &file, "out", &more));
     let table = table(&home.path().join("out/stability.csv"));
     let nothing = table.iter().find(|r| r["variant"] == "nothing").unwrap();
     // The lamps' own light, which nothing hides there.
     let left = number(nothing, "diffuse energy ratio");
-    assert!(left < 0.2, "a volume without the scene has no light to give but that of lamps: {left}");
-    assert_eq!(nothing["direct relMSE"], table.iter().find(|r| r["variant"] == "half").unwrap()["direct relMSE"]);
+    assert!(
+        left < 0.2,
+        "a volume without the scene has no light to give but that of lamps: {left}"
+    );
+    assert_eq!(
+        nothing["direct relMSE"],
+        table.iter().find(|r| r["variant"] == "half").unwrap()["direct relMSE"]
+    );
     for row in table.iter().filter(|r| r["case"] == "thin walls") {
         let recall: f64 = row["voxel recall"].parse().unwrap();
-        let least = if row["method"] == "tessellated" { 0.9 } else { 1.0 };
+        let least = if row["method"] == "tessellated" {
+            0.9
+        } else {
+            1.0
+        };
         assert!(recall >= least, "{}: recall {recall}", row["method"]);
     }
 }
@@ -516,46 +888,135 @@ fn mistakes() {
         fails(&mut stability(home.path(), &file, "out", more))
     };
     let has = |text: String, part: &str| assert!(text.contains(part), "{text}");
-    has(message("\"a\": {}", "\"x\": (motion: Light(name: \"sun\"))", &[]), "has no light 'sun'; it has lamp");
     has(
-        message("\"a\": {}", "\"x\": (set: { \"scene\": \"cornell\" }, motion: Actors(step: 0.1))", &[]),
+        message("\"a\": {}", "\"x\": (motion: Light(name: \"sun\"))", &[]),
+        "has no light 'sun'; it has lamp",
+    );
+    has(
+        message(
+            "\"a\": {}",
+            "\"x\": (set: { \"scene\": \"cornell\" }, motion: Actors(step: 0.1))",
+            &[],
+        ),
         "nothing is animated",
     );
-    has(message("\"a\": {}", "\"x\": ()", &["--only", "y"]), "the suite's cases are x");
-    has(message("\"a\": { \"voxel_dimm\": 3 }", "\"x\": ()", &[]), "voxel_dim");
-    has(message("\"a\": {}", "\"x\": (methods: [\"b\"])", &[]), "none of the suite's");
-    has(message("\"a\": {}", "\"x\": (motion: Camera(dolley: 1))", &[]), "dolley");
     has(
-        message("\"a\": {}", "\"x\": (motion: Switch(name: \"lamp\", at: 9, from: 0, to: 1))", &[]),
+        message("\"a\": {}", "\"x\": ()", &["--only", "y"]),
+        "the suite's cases are x",
+    );
+    has(
+        message("\"a\": { \"voxel_dimm\": 3 }", "\"x\": ()", &[]),
+        "voxel_dim",
+    );
+    has(
+        message("\"a\": {}", "\"x\": (methods: [\"b\"])", &[]),
+        "none of the suite's",
+    );
+    has(
+        message("\"a\": {}", "\"x\": (motion: Camera(dolley: 1))", &[]),
+        "dolley",
+    );
+    has(
+        message(
+            "\"a\": {}",
+            "\"x\": (motion: Switch(name: \"lamp\", at: 9, from: 0, to: 1))",
+            &[],
+        ),
         "needs two frames more, there are 4",
     );
-    let moves = |text: &str| message("\"a\": {}", &format!("\"x\": (motion: Parameter(name: {text}))"), &[]);
+    let moves = |text: &str| {
+        message(
+            "\"a\": {}",
+            &format!("\"x\": (motion: Parameter(name: {text}))"),
+            &[],
+        )
+    };
     has(moves("\"volume_ofset\", step: (1, 0, 0)"), "volume_offset");
     has(moves("\"volume_offset\", step: 1"), "expected 3 numbers");
     has(moves("\"volume_offset\""), "either a `step` or `values`");
     has(moves("\"volume\", step: 1"), "no option '1'");
     has(moves("\"bias\", step: 3"), "outside 0 to 8");
-    has(moves("\"warp\", values: [\"none\"]"), "compiled into the shaders");
+    has(
+        moves("\"warp\", values: [\"none\"]"),
+        "compiled into the shaders",
+    );
     let charts = |text: &str| {
-        let file = suite(home.path(), "\"a\": {}, \"b\": {}", "\"x\": (methods: [\"a\"]), \"y\": ()");
+        let file = suite(
+            home.path(),
+            "\"a\": {}, \"b\": {}",
+            "\"x\": (methods: [\"a\"]), \"y\": ()",
+        );
         chart(&file, text);
         fails(&mut stability(home.path(), &file, "out", &[]))
     };
-    has(charts("error: [\"z\"], motions: [\"y\"]"), "the case 'z', which is none");
-    has(charts("error: [\"x\"], motions: [\"y\"]"), "the method 'b' in the case 'x'");
-    has(charts("error: [\"y\"], motions: []"), "at least one case for `error`");
-    has(charts("error: [\"y\"], motions: [\"y\"], groups: { \"g\": [\"c\"] }"), "the method 'c'");
-    let equal = |text: &str| charts(&format!("error: [\"y\"], motions: [\"y\"], equal_time: (parameter: {text})"));
-    has(equal("\"voxel_dim\", values: [32], methods: [\"a\"]"), "'a' is the suite's first method");
-    has(equal("\"voxel_dimm\", values: [32], methods: [\"b\"]"), "voxel_dim");
-    has(equal("\"voxel_dim\", values: [3], methods: [\"b\"]"), "outside 16 to 512");
-    has(message("\"a\": {}", "\"x\": (motion: Cut(to: \"behind\", at: 1))", &[]), "no camera 'behind'");
-    has(message("\"a\": {}", "\"x\": (motion: Cut(to: \"default\", at: 0))", &[]), "`at` of 1 or more");
-    has(message("\"a\": {}", "\"x\": (motion: Path(file: \"none.ron\", step: 1))", &[]), "none.ron");
+    has(
+        charts("error: [\"z\"], motions: [\"y\"]"),
+        "the case 'z', which is none",
+    );
+    has(
+        charts("error: [\"x\"], motions: [\"y\"]"),
+        "the method 'b' in the case 'x'",
+    );
+    has(
+        charts("error: [\"y\"], motions: []"),
+        "at least one case for `error`",
+    );
+    has(
+        charts("error: [\"y\"], motions: [\"y\"], groups: { \"g\": [\"c\"] }"),
+        "the method 'c'",
+    );
+    let equal = |text: &str| {
+        charts(&format!(
+            "error: [\"y\"], motions: [\"y\"], equal_time: (parameter: {text})"
+        ))
+    };
+    has(
+        equal("\"voxel_dim\", values: [32], methods: [\"a\"]"),
+        "'a' is the suite's first method",
+    );
+    has(
+        equal("\"voxel_dimm\", values: [32], methods: [\"b\"]"),
+        "voxel_dim",
+    );
+    has(
+        equal("\"voxel_dim\", values: [3], methods: [\"b\"]"),
+        "outside 16 to 512",
+    );
+    has(
+        message(
+            "\"a\": {}",
+            "\"x\": (motion: Cut(to: \"behind\", at: 1))",
+            &[],
+        ),
+        "no camera 'behind'",
+    );
+    has(
+        message(
+            "\"a\": {}",
+            "\"x\": (motion: Cut(to: \"default\", at: 0))",
+            &[],
+        ),
+        "`at` of 1 or more",
+    );
+    has(
+        message(
+            "\"a\": {}",
+            "\"x\": (motion: Path(file: \"none.ron\", step: 1))",
+            &[],
+        ),
+        "none.ron",
+    );
     let file = suite(home.path(), "\"a\": {}", "\"x\": ()");
     let text = std::fs::read_to_string(&file).unwrap();
-    std::fs::write(&file, text.replacen("methods:", "pictures: \"glow\", methods:", 1)).unwrap();
-    has(fails(&mut stability(home.path(), &file, "out", &[])), "no pictures of 'glow'");
+    std::fs::write(
+        &file,
+        text.replacen("methods:", "pictures: \"glow\", methods:", 1),
+    )
+    .unwrap();
+    has(
+        fails(&mut stability(home.path(), &file, "out", &[])),
+        "no pictures of 'glow'",
+    );
     has(message("", "\"x\": ()", &[]), "at least one method");
     assert!(!home.path().join("out").exists(), "nothing was written");
 }

@@ -11,7 +11,9 @@ const BLOCKS: f64 = 32.0;
 const PAIRS: f64 = 2.0 * BLOCKS * (BLOCKS - 1.0);
 
 fn picture(light: impl Fn(u32, u32) -> f32) -> Linear {
-    let rgb = (0..SIDE * SIDE).map(|i| [light(i % SIDE, i / SIDE); 3]).collect();
+    let rgb = (0..SIDE * SIDE)
+        .map(|i| [light(i % SIDE, i / SIDE); 3])
+        .collect();
     Linear::radiance((SIDE, SIDE), rgb)
 }
 
@@ -55,12 +57,16 @@ fn a_step_counts_by_its_ratio_and_the_length_of_its_edge() {
     let edge = picture(|x, _| if x < 20 { 1.0 } else { 0.5 });
     close(structure(&edge, &edge).unwrap(), 0.0);
     let dark: f64 = 0.01 * (20.0 + 44.0 * 0.5) / 64.0;
-    close(structure(&flat, &edge).unwrap(), counted(((0.5 + dark) / (1.0 + dark)).ln()) * BLOCKS / PAIRS);
+    close(
+        structure(&flat, &edge).unwrap(),
+        counted(((0.5 + dark) / (1.0 + dark)).ln()) * BLOCKS / PAIRS,
+    );
 }
 
 #[test]
 fn a_constant_factor_and_a_texture_of_both_pictures_go_out() {
-    let light = |x: u32, y: u32| 1.0 + (x as f32 / 20.0).sin() * 0.5 + (y as f32 / 25.0).cos() * 0.3;
+    let light =
+        |x: u32, y: u32| 1.0 + (x as f32 / 20.0).sin() * 0.5 + (y as f32 / 25.0).cos() * 0.3;
     let textured = picture(|x, y| light(x, y) * texture(x, y));
     let twice = picture(|x, y| 2.0 * light(x, y) * texture(x, y));
     let factor = structure(&twice, &textured).unwrap();
@@ -68,7 +74,11 @@ fn a_constant_factor_and_a_texture_of_both_pictures_go_out() {
     // A blotch scores the same, or nearly, whether the walls have a texture or not.
     let blotch = |x, y| if dark_square(x, y) { 0.3 } else { 1.0 };
     let plain = structure(&picture(|x, y| light(x, y) * blotch(x, y)), &picture(light)).unwrap();
-    let under = structure(&picture(|x, y| light(x, y) * texture(x, y) * blotch(x, y)), &textured).unwrap();
+    let under = structure(
+        &picture(|x, y| light(x, y) * texture(x, y) * blotch(x, y)),
+        &textured,
+    )
+    .unwrap();
     assert!((under / plain - 1.0).abs() < 0.05, "{under} {plain}");
 }
 
@@ -79,7 +89,11 @@ fn of_errors_of_one_relmse_blotches_with_hard_edges_score_most() {
     let error = relmse(&hard, &flat).unwrap();
     // Each of these is scaled until its relMSE is that of the blotch.
     let same = |shape: &dyn Fn(u32, u32) -> f32| {
-        let root = |scale: f32| relmse(&picture(|x, y| 1.0 - scale * shape(x, y)), &flat).unwrap().sqrt();
+        let root = |scale: f32| {
+            relmse(&picture(|x, y| 1.0 - scale * shape(x, y)), &flat)
+                .unwrap()
+                .sqrt()
+        };
         let scale = (error.sqrt() / root(1.0)) as f32;
         picture(|x, y| 1.0 - scale * shape(x, y))
     };
@@ -90,9 +104,18 @@ fn of_errors_of_one_relmse_blotches_with_hard_edges_score_most() {
         (-(dx * dx + dy * dy) / 500.0).exp()
     });
     let score = |x: &Linear| structure(x, &flat).unwrap();
-    for (name, other, least) in [("offset", offset, 1e4), ("slope", slope, 10.0), ("soft blotch", soft, 5.0)] {
+    for (name, other, least) in [
+        ("offset", offset, 1e4),
+        ("slope", slope, 10.0),
+        ("soft blotch", soft, 5.0),
+    ] {
         close(relmse(&other, &flat).unwrap(), error);
-        assert!(score(&hard) > least * score(&other), "{name}: {} and {}", score(&hard), score(&other));
+        assert!(
+            score(&hard) > least * score(&other),
+            "{name}: {} and {}",
+            score(&hard),
+            score(&other)
+        );
     }
 }
 
@@ -105,7 +128,10 @@ fn what_noise_alone_scores_follows_from_two_halves_of_the_samples() {
         let i = (y * SIDE + x) as usize;
         (even.rgb[i][0] + odd.rgb[i][0]) / 2.0
     });
-    let (floor, found) = (structure_noise(&even, &odd).unwrap(), structure(&truth, &mean).unwrap());
+    let (floor, found) = (
+        structure_noise(&even, &odd).unwrap(),
+        structure(&truth, &mean).unwrap(),
+    );
     assert!((floor / found - 1.0).abs() < 0.1, "{floor} {found}");
     // Far below the edges of a blotch.
     let blotch = picture(|x, y| light(x) * if dark_square(x, y) { 0.3 } else { 1.0 });
@@ -114,10 +140,15 @@ fn what_noise_alone_scores_follows_from_two_halves_of_the_samples() {
 
 #[test]
 fn regions_count_the_pairs_whose_blocks_are_both_inside() {
-    let (flat, edge) = (picture(|_, _| 1.0), picture(|x, _| if x < 20 { 1.0 } else { 0.5 }));
+    let (flat, edge) = (
+        picture(|_, _| 1.0),
+        picture(|x, _| if x < 20 { 1.0 } else { 0.5 }),
+    );
     let compared = Compared::new(&edge, &flat).unwrap();
     let of = |inside: &dyn Fn(u32, u32) -> bool| {
-        let mask: Vec<bool> = (0..SIDE * SIDE).map(|i| inside(i % SIDE, i / SIDE)).collect();
+        let mask: Vec<bool> = (0..SIDE * SIDE)
+            .map(|i| inside(i % SIDE, i / SIDE))
+            .collect();
         compared.scores(Some(&mask)).unwrap().get("structure")
     };
     // Ten columns of blocks, whose right ones end at the edge: none of its pairs.
@@ -139,19 +170,46 @@ fn pixels_that_are_no_number_are_left_out_and_odd_sizes_have_smaller_blocks() {
     // The last column of blocks, one pixel wide, is dark: 3 of 3 * 3 + 4 * 2 pairs.
     let flat = odd(&|_, _| 1.0);
     let dark = odd(&|x, _| if x == 6 { 0.5 } else { 1.0 });
-    close(structure(&dark, &flat).unwrap(), counted((0.51f64 / 1.01).ln()) * 3.0 / 17.0);
+    close(
+        structure(&dark, &flat).unwrap(),
+        counted((0.51f64 / 1.01).ln()) * 3.0 / 17.0,
+    );
     // One pixel of a block is missing: the others speak for it. All are: its two pairs are missing.
-    let holed = odd(&|x, y| if (x, y) == (0, 0) { f32::NAN } else { dark.rgb[(y * 7 + x) as usize][0] });
-    close(structure(&holed, &flat).unwrap(), structure(&dark, &flat).unwrap());
-    let gone = odd(&|x, y| if x < 2 && y < 2 { f32::INFINITY } else { dark.rgb[(y * 7 + x) as usize][0] });
-    close(structure(&gone, &flat).unwrap(), counted((0.51f64 / 1.01).ln()) * 3.0 / 15.0);
+    let holed = odd(&|x, y| {
+        if (x, y) == (0, 0) {
+            f32::NAN
+        } else {
+            dark.rgb[(y * 7 + x) as usize][0]
+        }
+    });
+    close(
+        structure(&holed, &flat).unwrap(),
+        structure(&dark, &flat).unwrap(),
+    );
+    let gone = odd(&|x, y| {
+        if x < 2 && y < 2 {
+            f32::INFINITY
+        } else {
+            dark.rgb[(y * 7 + x) as usize][0]
+        }
+    });
+    close(
+        structure(&gone, &flat).unwrap(),
+        counted((0.51f64 / 1.01).ln()) * 3.0 / 15.0,
+    );
 }
 
 #[test]
 fn bits_do_not_depend_on_the_number_of_threads() {
-    let (x, r) = (picture(|x, y| random(x, y, 3)), picture(|x, y| random(x, y, 4)));
+    let (x, r) = (
+        picture(|x, y| random(x, y, 3)),
+        picture(|x, y| random(x, y, 4)),
+    );
     let with = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         pool.install(|| scores(&x, &r).unwrap().get("structure").to_bits())
     };
     assert_eq!(with(1), with(5));

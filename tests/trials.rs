@@ -28,7 +28,12 @@ struct Row {
 }
 
 fn row(setting: impl Into<String>, figure: &'static str, value: f64, wanted: (f64, f64)) -> Row {
-    Row { setting: setting.into(), figure, value, wanted }
+    Row {
+        setting: setting.into(),
+        figure,
+        value,
+        wanted,
+    }
 }
 
 impl Row {
@@ -38,7 +43,9 @@ impl Row {
 
     /// How far the figure lies beyond what is wanted, 0 where it does not.
     fn beyond(&self) -> f64 {
-        (self.value - self.wanted.1).max(self.wanted.0 - self.value).max(0.0)
+        (self.value - self.wanted.1)
+            .max(self.wanted.0 - self.value)
+            .max(0.0)
     }
 }
 
@@ -51,8 +58,15 @@ fn line(trial: &str, r: &Row, limit: f64) -> String {
         (true, false) => format!("at least {low}"),
         _ => format!("at most {high}"),
     };
-    let verdict = if r.is_wanted() { "yes".into() } else { format!("**no**, by at most {limit:.3}") };
-    format!("| {trial} | {} | {} | {:.4} | {wanted} | {verdict} |", r.setting, r.figure, r.value)
+    let verdict = if r.is_wanted() {
+        "yes".into()
+    } else {
+        format!("**no**, by at most {limit:.3}")
+    };
+    format!(
+        "| {trial} | {} | {} | {:.4} | {wanted} | {verdict} |",
+        r.setting, r.figure, r.value
+    )
 }
 
 /// The limit that a row of the table states: none for one that says yes; a new row's is a tenth more than what is measured.
@@ -60,7 +74,13 @@ fn limit(documented: Option<&&str>, r: &Row) -> f64 {
     if documented.is_some_and(|l| l.ends_with("| yes |")) {
         return 0.0;
     }
-    let stated = documented.and_then(|l| l.split_once("by at most ")?.1.trim_end_matches([' ', '|']).parse().ok());
+    let stated = documented.and_then(|l| {
+        l.split_once("by at most ")?
+            .1
+            .trim_end_matches([' ', '|'])
+            .parse()
+            .ok()
+    });
     stated.unwrap_or(1.1 * r.beyond() + 0.001)
 }
 
@@ -70,9 +90,17 @@ fn check(trial: &str, rows: &[Row]) {
     let path = root().join("docs/trials.md");
     let text = std::fs::read_to_string(&path).unwrap();
     let mine = |l: &&str| l.starts_with(&format!("| {trial} |"));
-    let same = |r: &Row| text.lines().filter(mine).find(|l| l.contains(&format!("| {} | {} |", r.setting, r.figure)));
+    let same = |r: &Row| {
+        text.lines()
+            .filter(mine)
+            .find(|l| l.contains(&format!("| {} | {} |", r.setting, r.figure)))
+    };
     let limits: Vec<f64> = rows.iter().map(|r| limit(same(r).as_ref(), r)).collect();
-    let lines: Vec<String> = rows.iter().zip(&limits).map(|(r, limit)| line(trial, r, *limit)).collect();
+    let lines: Vec<String> = rows
+        .iter()
+        .zip(&limits)
+        .map(|(r, limit)| line(trial, r, *limit))
+        .collect();
     println!("{}", lines.join("\n"));
     if device() != "llvmpipe" {
         return;
@@ -86,7 +114,10 @@ fn check(trial: &str, rows: &[Row]) {
         );
     }
     if std::env::var_os("CONELAB_BLESS").is_some() {
-        let at = text.lines().position(|l| mine(&l)).unwrap_or(text.lines().count());
+        let at = text
+            .lines()
+            .position(|l| mine(&l))
+            .unwrap_or(text.lines().count());
         let mut out: Vec<&str> = text.lines().filter(|l| !mine(l)).collect();
         for (i, l) in lines.iter().enumerate() {
             out.insert(at + i, l);
@@ -95,21 +126,35 @@ fn check(trial: &str, rows: &[Row]) {
         return;
     }
     let documented: Vec<&str> = text.lines().filter(mine).collect();
-    assert_eq!(documented.len(), rows.len(), "{trial}: docs/trials.md has other rows");
+    assert_eq!(
+        documented.len(),
+        rows.len(),
+        "{trial}: docs/trials.md has other rows"
+    );
     let mut wrong = String::new();
     for ((documented, line), r) in documented.iter().zip(&lines).zip(rows) {
-        let (a, b): (Vec<&str>, Vec<&str>) = (documented.split('|').collect(), line.split('|').collect());
+        let (a, b): (Vec<&str>, Vec<&str>) =
+            (documented.split('|').collect(), line.split('|').collect());
         let number: f64 = a[4].trim().parse().unwrap();
         let near = (number - r.value).abs() <= 0.03 * number.abs().max(0.02);
         if !near || [1, 2, 3, 5, 6].iter().any(|i| a[*i] != b[*i]) {
             let _ = writeln!(wrong, "documented     {documented}\nmeasured {line}");
         }
     }
-    assert!(wrong.is_empty(), "docs/trials.md no longer says what is measured:\n{wrong}");
+    assert!(
+        wrong.is_empty(),
+        "docs/trials.md no longer says what is measured:\n{wrong}"
+    );
 }
 
 fn with(mut experiment: Experiment, name: &str, value: &str) -> Experiment {
-    experiment.params.push((Loc { value: name.into(), at: At::default() }, value.into()));
+    experiment.params.push((
+        Loc {
+            value: name.into(),
+            at: At::default(),
+        },
+        value.into(),
+    ));
     experiment
 }
 
@@ -118,8 +163,16 @@ fn run(lab: &Lab, experiment: &Experiment, samples: u64) -> (BTreeMap<String, Li
     let scene = Scene::open(&experiment.scene, &|_, _| ControlFlow::Continue(())).unwrap();
     let scene = experiment.adapted(Arc::new(scene)).unwrap();
     // All rays in one frame, but where turns are asked for: of diffuse light they add up to the same bits (tests/turns.rs).
-    let turns = experiment.params.iter().find(|p| p.0.value == "gather_frames").map(|p| p.1.clone());
-    let experiment = &with(experiment.clone(), "gather_frames", turns.as_deref().unwrap_or("1"));
+    let turns = experiment
+        .params
+        .iter()
+        .find(|p| p.0.value == "gather_frames")
+        .map(|p| p.1.clone());
+    let experiment = &with(
+        experiment.clone(),
+        "gather_frames",
+        turns.as_deref().unwrap_or("1"),
+    );
     let mut wanted = Vec::new();
     let prepared = lab.prepare(experiment, scene.clone(), |graph| {
         wanted.extend(parts_of(graph).into_iter().map(|p| p.texture));
@@ -133,7 +186,14 @@ fn run(lab: &Lab, experiment: &Experiment, samples: u64) -> (BTreeMap<String, Li
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
     let parts = session.parts().unwrap();
     drop(session);
-    let reference = gather(lab, experiment, &scene, 1, Goal::Samples(samples), &mut |_| ControlFlow::Continue(()));
+    let reference = gather(
+        lab,
+        experiment,
+        &scene,
+        1,
+        Goal::Samples(samples),
+        &mut |_| ControlFlow::Continue(()),
+    );
     assert_clean(lab);
     (parts, reference.unwrap_or_else(|e| panic!("{e}")))
 }
@@ -150,7 +210,14 @@ fn quads(name: &str, materials: &str, quads: &[(&str, [[f64; 3]; 4])], scene: &s
     }
     for (i, (material, _)) in quads.iter().enumerate() {
         let v = 4 * i + 1;
-        let _ = writeln!(obj, "usemtl {material}\nf {} {} {} {}", v, v + 1, v + 2, v + 3);
+        let _ = writeln!(
+            obj,
+            "usemtl {material}\nf {} {} {} {}",
+            v,
+            v + 1,
+            v + 2,
+            v + 3
+        );
     }
     std::fs::write(folder.join(format!("{name}.obj")), obj).unwrap();
     std::fs::write(folder.join(format!("{name}.mtl")), materials).unwrap();
@@ -160,20 +227,38 @@ fn quads(name: &str, materials: &str, quads: &[(&str, [[f64; 3]; 4])], scene: &s
 }
 
 /// The six sides of a box, seen from inside or from outside.
-fn sides(material: &'static str, low: [f64; 3], high: [f64; 3], inside: bool) -> Vec<(&'static str, [[f64; 3]; 4])> {
+fn sides(
+    material: &'static str,
+    low: [f64; 3],
+    high: [f64; 3],
+    inside: bool,
+) -> Vec<(&'static str, [[f64; 3]; 4])> {
     let at = |i: usize| {
-        let pick = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
+        let pick = |axis: usize| {
+            if i >> axis & 1 == 0 {
+                low[axis]
+            } else {
+                high[axis]
+            }
+        };
         [pick(0), pick(1), pick(2)]
     };
-    [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
-        .into_iter()
-        .map(|mut c: [usize; 4]| {
-            if inside {
-                c.reverse();
-            }
-            (material, c.map(at))
-        })
-        .collect()
+    [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ]
+    .into_iter()
+    .map(|mut c: [usize; 4]| {
+        if inside {
+            c.reverse();
+        }
+        (material, c.map(at))
+    })
+    .collect()
 }
 
 const ANY: f64 = f64::INFINITY;
@@ -188,9 +273,22 @@ fn furnace() {
     let lab = lab(root());
     let mut rows = Vec::new();
     for dim in ["32", "64", "128"] {
-        let (parts, _) = run(&lab, &experiment("furnace", (64, 48), &[("voxel_dim", dim), QUICK, ONE_BOUNCE]), 32);
+        let (parts, _) = run(
+            &lab,
+            &experiment(
+                "furnace",
+                (64, 48),
+                &[("voxel_dim", dim), QUICK, ONE_BOUNCE],
+            ),
+            32,
+        );
         let light = parts["diffuse"].mean() + 0.5 * parts["specular"].mean();
-        rows.push(row(format!("{dim} voxels"), "diffuse and half of specular / exact", light / 0.5, (0.98, 1.02)));
+        rows.push(row(
+            format!("{dim} voxels"),
+            "diffuse and half of specular / exact",
+            light / 0.5,
+            (0.98, 1.02),
+        ));
     }
     check("T1 furnace", &rows);
 }
@@ -201,10 +299,22 @@ fn white_sky() {
     let lab = lab(root());
     let mut rows = Vec::new();
     for dim in ["32", "64"] {
-        let (parts, reference) =
-            run(&lab, &experiment("white-sky", (64, 64), &[("voxel_dim", dim), QUICK, ONE_BOUNCE]), 32);
+        let (parts, reference) = run(
+            &lab,
+            &experiment(
+                "white-sky",
+                (64, 64),
+                &[("voxel_dim", dim), QUICK, ONE_BOUNCE],
+            ),
+            32,
+        );
         let ratio = parts["occlusion"].mean() / reference.parts["occlusion"].mean.mean();
-        rows.push(row(format!("{dim} voxels"), "openness / exact", ratio, (0.99, 1.01)));
+        rows.push(row(
+            format!("{dim} voxels"),
+            "openness / exact",
+            ratio,
+            (0.99, 1.01),
+        ));
     }
     check("T2 white sky", &rows);
 }
@@ -214,24 +324,51 @@ fn white_sky() {
 fn resolution() {
     let lab = lab(root());
     let mut means = Vec::new();
-    let finer: &[&str] = if device() == "llvmpipe" { &[] } else { &["256", "512"] };
+    let finer: &[&str] = if device() == "llvmpipe" {
+        &[]
+    } else {
+        &["256", "512"]
+    };
     let mut rows = Vec::new();
     for dim in ["32", "64", "128"].iter().chain(finer) {
         let mut set = vec![("voxel_dim", *dim), QUICK, ONE_BOUNCE];
         if finer.contains(dim) {
-            set.extend([("voxel_capacity", "2700000"), ("fragment_capacity", "64000000")]);
+            set.extend([
+                ("voxel_capacity", "2700000"),
+                ("fragment_capacity", "64000000"),
+            ]);
         }
         let (parts, reference) = run(&lab, &experiment("cornell", (100, 75), &set), 256);
         let expected = &reference.parts["diffuse"].mean;
-        let most = expected.rgb.iter().map(|t| t.iter().sum::<f32>()).fold(0.0, f32::max);
+        let most = expected
+            .rgb
+            .iter()
+            .map(|t| t.iter().sum::<f32>())
+            .fold(0.0, f32::max);
         let share = f64::from(most) / (3.0 * expected.mean() * expected.rgb.len() as f64);
-        assert!(share < 0.005, "one pixel holds {share:.4} of the reference: the mean says little about the others");
+        assert!(
+            share < 0.005,
+            "one pixel holds {share:.4} of the reference: the mean says little about the others"
+        );
         let mean = parts["diffuse"].mean() / expected.mean();
-        rows.push(row(format!("{dim} voxels"), "diffuse / reference", mean, (0.9, 1.1)));
+        rows.push(row(
+            format!("{dim} voxels"),
+            "diffuse / reference",
+            mean,
+            (0.9, 1.1),
+        ));
         means.push(mean);
     }
-    let (low, high) = means.iter().skip(1).fold((ANY, -ANY), |(a, b), m| (a.min(*m), b.max(*m)));
-    rows.push(row("64 voxels and finer", "drift of the mean", high / low - 1.0, (-ANY, 0.03)));
+    let (low, high) = means
+        .iter()
+        .skip(1)
+        .fold((ANY, -ANY), |(a, b), m| (a.min(*m), b.max(*m)));
+    rows.push(row(
+        "64 voxels and finer",
+        "drift of the mean",
+        high / low - 1.0,
+        (-ANY, 0.03),
+    ));
     check("T3 resolution", &rows);
 }
 
@@ -244,7 +381,12 @@ fn walls() {
     for (voxels, thickness) in [(0.3, 0.03), (1.0, 0.1), (2.0, 0.2), (4.0, 0.4)] {
         for degrees in [0, 20, 45] {
             let mut list = sides("wall", [-2.0, -1.0, -1.0], [2.0, 1.0, 1.0], true);
-            list.extend(sides("wall", [-0.5 * thickness, -1.0, -1.0], [0.5 * thickness, 1.0, 1.0], false));
+            list.extend(sides(
+                "wall",
+                [-0.5 * thickness, -1.0, -1.0],
+                [0.5 * thickness, 1.0, 1.0],
+                false,
+            ));
             let name = format!("chambers-{voxels}-{degrees}");
             // The lamp and both eyes turn with the chambers.
             let turn = |x: f64, y: f64, z: f64| {
@@ -252,7 +394,11 @@ fn walls() {
                 format!("({:.6}, {y}, {:.6})", c * x + s * z, c * z - s * x)
             };
             let camera = |side: f64| {
-                format!("(eye: {}, target: {}, fov_y: 70)", turn(side * 1.8, 0.5, 0.8), turn(side * 0.6, -0.4, -0.4))
+                format!(
+                    "(eye: {}, target: {}, fov_y: 70)",
+                    turn(side * 1.8, 0.5, 0.8),
+                    turn(side * 0.6, -0.4, -0.4)
+                )
             };
             let scene = format!(
                 "(models: [(file: \"{name}.obj\", transform: (rotate_deg: (0, {degrees}, 0)))], sky: (0, 0, 0), \
@@ -263,7 +409,13 @@ fn walls() {
                 camera(-1.0)
             );
             let file = quads(&name, "newmtl wall\nKd 0.8 0.8 0.8\nPr 1\n", &list, &scene);
-            let set = [("voxel_dim", "64"), ("volume", "box"), ("volume_size", "(6.4, 6.4, 6.4)"), QUICK, ONE_BOUNCE];
+            let set = [
+                ("voxel_dim", "64"),
+                ("volume", "box"),
+                ("volume_size", "(6.4, 6.4, 6.4)"),
+                QUICK,
+                ONE_BOUNCE,
+            ];
             let of = |camera: &str| {
                 let mut e = experiment(&file, (48, 36), &set);
                 e.camera = conelab::experiment::CameraChoice::Named(camera.into());
@@ -271,13 +423,27 @@ fn walls() {
             };
             let (lit, lit_reference) = of("lit");
             let (dark, dark_reference) = of("dark");
-            assert_eq!(dark_reference.parts["diffuse"].mean.mean(), 0.0, "the dark chamber is closed");
+            assert_eq!(
+                dark_reference.parts["diffuse"].mean.mean(),
+                0.0,
+                "the dark chamber is closed"
+            );
             let bright = lit_reference.parts["diffuse"].mean.mean();
             let setting = format!("{voxels} voxels thick, {degrees} degrees");
             let leak = dark["diffuse"].mean() / bright;
-            rows.push(row(setting.clone(), "leak / lit chamber", leak, (-ANY, 0.01)));
+            rows.push(row(
+                setting.clone(),
+                "leak / lit chamber",
+                leak,
+                (-ANY, 0.01),
+            ));
             let energy = lit["diffuse"].mean() / bright;
-            rows.push(row(setting, "lit chamber / reference", energy, (0.95, 1.05)));
+            rows.push(row(
+                setting,
+                "lit chamber / reference",
+                energy,
+                (0.95, 1.05),
+            ));
         }
     }
     check("T4 walls", &rows);
@@ -295,12 +461,22 @@ fn corner_factor(x: f64, y: f64) -> f64 {
 fn edge() {
     let lab = lab(root());
     let (h, a, b): (f64, f64, f64) = (1.0, 5.0, 6.0);
-    let floor = [[-6.0, 0.0, 6.0], [6.0, 0.0, 6.0], [6.0, 0.0, -6.0], [-6.0, 0.0, -6.0]];
+    let floor = [
+        [-6.0, 0.0, 6.0],
+        [6.0, 0.0, 6.0],
+        [6.0, 0.0, -6.0],
+        [-6.0, 0.0, -6.0],
+    ];
     let roof = [[-a, h, b], [0.0, h, b], [0.0, h, -b], [-a, h, -b]];
     let (eye, target): ([f64; 3], [f64; 3]) = ([3.0, 0.8, 0.0], [-1.0, 0.0, 0.0]);
     let scene = "(models: [(file: \"edge.obj\")], sky: (1, 1, 1), \
                  cameras: { \"default\": (eye: (3, 0.8, 0), target: (-1, 0, 0), fov_y: 40) })";
-    let file = quads("edge", "newmtl white\nKd 0.5 0.5 0.5\nPr 1\n", &[("white", floor), ("white", roof)], scene);
+    let file = quads(
+        "edge",
+        "newmtl white\nKd 0.5 0.5 0.5\nPr 1\n",
+        &[("white", floor), ("white", roof)],
+        scene,
+    );
     let (width, height) = (64u32, 48u32);
     let exact = |pixel: usize| {
         let (i, j) = (pixel as u32 % width, pixel as u32 / width);
@@ -308,16 +484,19 @@ fn edge() {
         let length = (forward[0] * forward[0] + forward[1] * forward[1]).sqrt();
         let (fx, fy) = (forward[0] / length, forward[1] / length);
         let tan = 20f64.to_radians().tan();
-        let x = (2.0 * (f64::from(i) + 0.5) / f64::from(width) - 1.0) * tan * f64::from(width) / f64::from(height);
+        let x = (2.0 * (f64::from(i) + 0.5) / f64::from(width) - 1.0) * tan * f64::from(width)
+            / f64::from(height);
         let y = (1.0 - 2.0 * (f64::from(j) + 0.5) / f64::from(height)) * tan;
         // Right of a viewer who looks along -x is -z; up is at right angles to the view.
         let d = [fx + y * fy, fy - y * fx, -x];
         let t = -eye[1] / d[1];
         let p = [eye[0] + t * d[0], t * d[2]];
         let floor = t > 0.0 && p[0].abs() < 4.0 && p[1].abs() < 4.0;
-        let signed = |x: f64, y: f64| x.signum() * y.signum() * corner_factor(x.abs() / h, y.abs() / h);
+        let signed =
+            |x: f64, y: f64| x.signum() * y.signum() * corner_factor(x.abs() / h, y.abs() / h);
         let [px, pz] = p;
-        let hidden = signed(-px, b - pz) - signed(-a - px, b - pz) - signed(-px, -b - pz) + signed(-a - px, -b - pz);
+        let hidden = signed(-px, b - pz) - signed(-a - px, b - pz) - signed(-px, -b - pz)
+            + signed(-a - px, -b - pz);
         (floor && d[1] < 0.0).then_some(1.0 - hidden)
     };
     let error = |picture: &Linear| {
@@ -335,7 +514,10 @@ fn edge() {
         ("rays", &[]),
         ("whole lobe", &[("trace", "lobe_rays")]),
         ("cones", &[("cone_count", "5")]),
-        ("cones of 60 degrees", &[("diffuse_aperture", "60"), ("lod_offset", "0")]),
+        (
+            "cones of 60 degrees",
+            &[("diffuse_aperture", "60"), ("lod_offset", "0")],
+        ),
     ];
     for (cones, set) in sets {
         let settings = [&[("voxel_dim", "64"), QUICK, ONE_BOUNCE], set].concat();
@@ -348,7 +530,12 @@ fn edge() {
                 (-ANY, 0.03),
             ));
         }
-        rows.push(row(format!("{cones}, 64 voxels"), "RMS of openness", error(&parts["occlusion"]), (-ANY, 0.08)));
+        rows.push(row(
+            format!("{cones}, 64 voxels"),
+            "RMS of openness",
+            error(&parts["occlusion"]),
+            (-ANY, 0.08),
+        ));
     }
     check("T5 edge", &rows);
 }
@@ -357,25 +544,58 @@ fn edge() {
 #[test]
 fn colour_bleed() {
     let lab = lab(root());
-    let (parts, reference) =
-        run(&lab, &experiment("cornell", (96, 72), &[("voxel_dim", "64"), QUICK, ONE_BOUNCE]), 512);
+    let (parts, reference) = run(
+        &lab,
+        &experiment(
+            "cornell",
+            (96, 72),
+            &[("voxel_dim", "64"), QUICK, ONE_BOUNCE],
+        ),
+        512,
+    );
     let expected = &reference.parts["diffuse"].mean;
     let light = &parts["diffuse"];
     let s = scores(light, expected).unwrap();
     // The floor beside each wall, in pixels of this view.
     let redness = |picture: &Linear, columns: std::ops::Range<usize>| {
-        let texels = (62..68).flat_map(|y| columns.clone().map(move |x| 96 * y + x)).map(|i| picture.rgb[i]);
-        let (r, g) = texels.fold((0.0, 0.0), |(r, g), t| (r + f64::from(t[0]), g + f64::from(t[1])));
+        let texels = (62..68)
+            .flat_map(|y| columns.clone().map(move |x| 96 * y + x))
+            .map(|i| picture.rgb[i]);
+        let (r, g) = texels.fold((0.0, 0.0), |(r, g), t| {
+            (r + f64::from(t[0]), g + f64::from(t[1]))
+        });
         r / g
     };
-    let bleed = |columns: std::ops::Range<usize>| redness(light, columns.clone()) / redness(expected, columns);
+    let bleed = |columns: std::ops::Range<usize>| {
+        redness(light, columns.clone()) / redness(expected, columns)
+    };
     check(
         "T13 colour bleed",
         &[
-            row("64 voxels", "diffuse / reference", s.get("energy_ratio"), (0.9, 1.1)),
-            row("64 voxels", "relMSE of diffuse", s.get("relmse"), (-ANY, 0.02)),
-            row("64 voxels, floor at the red wall", "red over green / reference", bleed(20..28), (0.8, 1.25)),
-            row("64 voxels, floor at the green wall", "red over green / reference", bleed(68..76), (0.8, 1.25)),
+            row(
+                "64 voxels",
+                "diffuse / reference",
+                s.get("energy_ratio"),
+                (0.9, 1.1),
+            ),
+            row(
+                "64 voxels",
+                "relMSE of diffuse",
+                s.get("relmse"),
+                (-ANY, 0.02),
+            ),
+            row(
+                "64 voxels, floor at the red wall",
+                "red over green / reference",
+                bleed(20..28),
+                (0.8, 1.25),
+            ),
+            row(
+                "64 voxels, floor at the green wall",
+                "red over green / reference",
+                bleed(68..76),
+                (0.8, 1.25),
+            ),
         ],
     );
 }
@@ -386,28 +606,77 @@ fn specular_lobe() {
     let lab = lab(root());
     let mut rows = Vec::new();
     for roughness in ["0.1", "0.2", "0.4", "0.6", "0.8", "1.0"] {
-        let floor = [[-2.0, 0.0, 2.0], [2.0, 0.0, 2.0], [2.0, 0.0, -2.0], [-2.0, 0.0, -2.0]];
-        let strip = [[-1.0, 0.4, -1.0], [1.0, 0.4, -1.0], [1.0, 0.9, -1.0], [-1.0, 0.9, -1.0]];
+        let floor = [
+            [-2.0, 0.0, 2.0],
+            [2.0, 0.0, 2.0],
+            [2.0, 0.0, -2.0],
+            [-2.0, 0.0, -2.0],
+        ];
+        let strip = [
+            [-1.0, 0.4, -1.0],
+            [1.0, 0.4, -1.0],
+            [1.0, 0.9, -1.0],
+            [-1.0, 0.9, -1.0],
+        ];
         let scene = "(models: [(file: \"NAME.obj\")], sky: (0, 0, 0), \
                      cameras: { \"default\": (eye: (0, 1.2, 2.2), target: (0, 0, -0.3), fov_y: 50) })";
-        let materials =
-            format!("newmtl metal\nKd 0.9 0.9 0.9\nPr {roughness}\nPm 1\nnewmtl strip\nKd 0 0 0\nKe 4 4 4\nPr 1\n");
+        let materials = format!(
+            "newmtl metal\nKd 0.9 0.9 0.9\nPr {roughness}\nPm 1\nnewmtl strip\nKd 0 0 0\nKe 4 4 4\nPr 1\n"
+        );
         let name = format!("strip-{roughness}");
         let scene = scene.replace("NAME", &name);
-        let file = quads(&name, &materials, &[("metal", floor), ("strip", strip)], &scene);
+        let file = quads(
+            &name,
+            &materials,
+            &[("metal", floor), ("strip", strip)],
+            &scene,
+        );
         let (parts, reference) = run(
             &lab,
-            &experiment(&file, (64, 48), &[("voxel_dim", "128"), ("gather_frames", "16"), QUICK, ONE_BOUNCE]),
+            &experiment(
+                &file,
+                (64, 48),
+                &[
+                    ("voxel_dim", "128"),
+                    ("gather_frames", "16"),
+                    QUICK,
+                    ONE_BOUNCE,
+                ],
+            ),
             256,
         );
         let s = scores(&parts["specular"], &reference.parts["specular"].mean).unwrap();
         let setting = format!("roughness {roughness}");
-        rows.push(row(setting.clone(), "specular / reference", s.get("energy_ratio"), (0.8, 1.2)));
-        rows.push(row(setting.clone(), "relMSE of specular", s.get("relmse"), (-ANY, 0.1)));
-        let rays = experiment(&file, (64, 48), &[("voxel_dim", "128"), ("trace", "lobe_rays"), QUICK, ONE_BOUNCE]);
+        rows.push(row(
+            setting.clone(),
+            "specular / reference",
+            s.get("energy_ratio"),
+            (0.8, 1.2),
+        ));
+        rows.push(row(
+            setting.clone(),
+            "relMSE of specular",
+            s.get("relmse"),
+            (-ANY, 0.1),
+        ));
+        let rays = experiment(
+            &file,
+            (64, 48),
+            &[
+                ("voxel_dim", "128"),
+                ("trace", "lobe_rays"),
+                QUICK,
+                ONE_BOUNCE,
+            ],
+        );
         let (parts, reference) = run(&lab, &rays, 256);
         let s = scores(&parts["specular"], &reference.parts["specular"].mean).unwrap();
-        rows.push(row(format!("{setting}, rays"), "specular / reference", s.get("energy_ratio"), (0.8, 1.2)));
+        rows.push(row(
+            format!("{setting}, rays"),
+            "specular / reference",
+            s.get("energy_ratio"),
+            (0.8, 1.2),
+        ));
     }
     check("T15 specular lobe", &rows);
 }

@@ -7,7 +7,8 @@ use common::closed_meshes::{cube, placed, poses, torus};
 use common::{assert_clean, conelab, experiment, fails, lab, prepare, root, scene, succeeds};
 use conelab::lab::Session;
 use conelab::measure::oracle::{
-    Axes, Cell, Grid, Neighbours, Overlap, Score, Surfaces, clip, compare, exact, flood, read, triangles_of,
+    Axes, Cell, Grid, Neighbours, Overlap, Score, Surfaces, clip, compare, exact, flood, read,
+    triangles_of,
 };
 use conelab::scene::{Material, Mesh, Scene, Submesh, Vertex};
 use glam::{DVec3, Vec3};
@@ -20,7 +21,9 @@ const QUICK: (&str, &str) = ("shadow_dim", "512");
 const UNIT: (DVec3, DVec3) = (DVec3::splat(0.5), DVec3::splat(0.5));
 
 fn even(low: f64, high: f64, cells: usize) -> Grid {
-    let borders: Vec<f64> = (0..=cells).map(|i| low + (high - low) * i as f64 / cells as f64).collect();
+    let borders: Vec<f64> = (0..=cells)
+        .map(|i| low + (high - low) * i as f64 / cells as f64)
+        .collect();
     Grid::new([borders.clone(), borders.clone(), borders]).unwrap()
 }
 
@@ -33,15 +36,64 @@ fn overlaps_that_are_known() {
     // Triangle; conservative; thin: against the cell from 0 to 1.
     use Overlap::{Borderline, Inside, Outside};
     let cases = [
-        ("through the middle", [[-1.0, 0.5, -1.0], [3.0, 0.5, -1.0], [-1.0, 0.5, 3.0]], Inside, Inside),
-        ("tiny, near a corner", [[0.1, 0.1, 0.1], [0.12, 0.1, 0.1], [0.1, 0.12, 0.1]], Inside, Outside),
-        ("cuts a corner", [[0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.2]], Inside, Outside),
-        ("just past a corner", [[2.1, 1.0, 0.0], [1.0, 2.1, 0.0], [1.6, 1.6, 3.0]], Outside, Outside),
-        ("lies in a face", [[-1.0, 1.0, -1.0], [3.0, 1.0, -1.0], [-1.0, 1.0, 3.0]], Borderline, Borderline),
-        ("1e-4 below a face", [[-1.0, 0.9999, -1.0], [3.0, 0.9999, -1.0], [-1.0, 0.9999, 3.0]], Inside, Inside),
-        ("touches a corner", [[1.0, 1.0, 1.0], [2.0, 1.5, 1.5], [1.5, 2.0, 1.5]], Borderline, Outside),
-        ("needle through", [[-5.0, 0.4, 0.4], [5.0, 0.6, 0.6], [5.0, 0.6, 0.600001]], Inside, Inside),
-        ("line without area", [[-1.0, 0.5, 0.5], [0.5, 0.5, 0.5], [2.0, 0.5, 0.5]], Inside, Inside),
+        (
+            "through the middle",
+            [[-1.0, 0.5, -1.0], [3.0, 0.5, -1.0], [-1.0, 0.5, 3.0]],
+            Inside,
+            Inside,
+        ),
+        (
+            "tiny, near a corner",
+            [[0.1, 0.1, 0.1], [0.12, 0.1, 0.1], [0.1, 0.12, 0.1]],
+            Inside,
+            Outside,
+        ),
+        (
+            "cuts a corner",
+            [[0.2, 0.0, 0.0], [0.0, 0.2, 0.0], [0.0, 0.0, 0.2]],
+            Inside,
+            Outside,
+        ),
+        (
+            "just past a corner",
+            [[2.1, 1.0, 0.0], [1.0, 2.1, 0.0], [1.6, 1.6, 3.0]],
+            Outside,
+            Outside,
+        ),
+        (
+            "lies in a face",
+            [[-1.0, 1.0, -1.0], [3.0, 1.0, -1.0], [-1.0, 1.0, 3.0]],
+            Borderline,
+            Borderline,
+        ),
+        (
+            "1e-4 below a face",
+            [
+                [-1.0, 0.9999, -1.0],
+                [3.0, 0.9999, -1.0],
+                [-1.0, 0.9999, 3.0],
+            ],
+            Inside,
+            Inside,
+        ),
+        (
+            "touches a corner",
+            [[1.0, 1.0, 1.0], [2.0, 1.5, 1.5], [1.5, 2.0, 1.5]],
+            Borderline,
+            Outside,
+        ),
+        (
+            "needle through",
+            [[-5.0, 0.4, 0.4], [5.0, 0.6, 0.6], [5.0, 0.6, 0.600001]],
+            Inside,
+            Inside,
+        ),
+        (
+            "line without area",
+            [[-1.0, 0.5, 0.5], [0.5, 0.5, 0.5], [2.0, 0.5, 0.5]],
+            Inside,
+            Inside,
+        ),
     ];
     for (what, corners, conservative, thin) in cases {
         let axes = Axes::new(triangle(corners));
@@ -52,9 +104,13 @@ fn overlaps_that_are_known() {
 fn any_triangle() -> impl Strategy<Value = [DVec3; 3]> {
     // Around a cell, and of every size from a hundredth of it to a hundred.
     let number = -1.0f64..1.0;
-    let corner = move || (number.clone(), -1.0f64..1.0, -1.0f64..1.0).prop_map(|(x, y, z)| DVec3::new(x, y, z));
+    let corner = move || {
+        (number.clone(), -1.0f64..1.0, -1.0f64..1.0).prop_map(|(x, y, z)| DVec3::new(x, y, z))
+    };
     (corner(), corner(), corner(), corner(), -2.0f64..2.0).prop_map(|(at, a, b, c, size)| {
-        [a, b, c].map(|p| DVec3::splat(0.5) + 1.2 * at + 10f64.powf(size) * (p - (a + b + c) / 3.0 * 0.9))
+        [a, b, c].map(|p| {
+            DVec3::splat(0.5) + 1.2 * at + 10f64.powf(size) * (p - (a + b + c) / 3.0 * 0.9)
+        })
     })
 }
 
@@ -95,22 +151,33 @@ fn fills_tell_faces_from_corners() {
         let mut blocked = vec![false; grid.count()];
         for n in 0..grid.count() as u32 {
             let p = grid.place(n);
-            blocked[n as usize] = p.iter().all(|i| (1..=5).contains(i)) && p.iter().any(|i| *i == 1 || *i == 5);
+            blocked[n as usize] =
+                p.iter().all(|i| (1..=5).contains(i)) && p.iter().any(|i| *i == 1 || *i == 5);
         }
         if let Some(hole) = hole {
             blocked[grid.number(hole) as usize] = false;
         }
         blocked
     };
-    let inside = |blocked: &[bool], neighbours| flood(&grid, blocked, neighbours)[grid.number([3, 3, 3]) as usize];
+    let inside = |blocked: &[bool], neighbours| {
+        flood(&grid, blocked, neighbours)[grid.number([3, 3, 3]) as usize]
+    };
     for (what, hole, six, twenty_six) in [
         ("closed", None, false, false),
         ("open in a face", Some([1, 3, 3]), true, true),
         ("open in an edge", Some([1, 1, 3]), false, true),
         ("open in a corner", Some([5, 5, 5]), false, true),
     ] {
-        assert_eq!(inside(&shell(hole), Neighbours::Six), six, "{what}, through faces");
-        assert_eq!(inside(&shell(hole), Neighbours::TwentySix), twenty_six, "{what}, through corners");
+        assert_eq!(
+            inside(&shell(hole), Neighbours::Six),
+            six,
+            "{what}, through faces"
+        );
+        assert_eq!(
+            inside(&shell(hole), Neighbours::TwentySix),
+            twenty_six,
+            "{what}, through corners"
+        );
     }
 }
 
@@ -121,18 +188,40 @@ fn cells_of(scene: &Scene, time: f64, grid: &Grid) -> Vec<Cell> {
 #[test]
 fn cells_hold_the_mean_of_what_is_in_them() {
     // A wall in the middle of a layer of cells, left half red and right half green, the border in the middle of cells.
-    let vertex = |x: f32, y: f32| Vertex { position: [x, y, 0.5], normal: [0.0, 0.0, 1.0], ..Vertex::default() };
-    let corners = [[-9.0, -9.0], [1.5, -9.0], [1.5, 9.0], [-9.0, 9.0], [9.0, -9.0], [9.0, 9.0]];
+    let vertex = |x: f32, y: f32| Vertex {
+        position: [x, y, 0.5],
+        normal: [0.0, 0.0, 1.0],
+        ..Vertex::default()
+    };
+    let corners = [
+        [-9.0, -9.0],
+        [1.5, -9.0],
+        [1.5, 9.0],
+        [-9.0, 9.0],
+        [9.0, -9.0],
+        [9.0, 9.0],
+    ];
     let mesh = Mesh {
         vertices: corners.map(|[x, y]| vertex(x, y)).to_vec(),
         indices: vec![0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2],
         submeshes: vec![
-            Submesh { first_index: 0, index_count: 6, material: 0 },
-            Submesh { first_index: 6, index_count: 6, material: 1 },
+            Submesh {
+                first_index: 0,
+                index_count: 6,
+                material: 0,
+            },
+            Submesh {
+                first_index: 6,
+                index_count: 6,
+                material: 1,
+            },
         ],
         ..Mesh::default()
     };
-    let paint = |color: [f32; 4]| Material { base_color: color.into(), ..Material::default() };
+    let paint = |color: [f32; 4]| Material {
+        base_color: color.into(),
+        ..Material::default()
+    };
     let materials = vec![paint([0.8, 0.0, 0.2, 1.0]), paint([0.0, 0.6, 0.2, 1.0])];
     let wall = placed(mesh, materials, Vec::new());
     let grid = even(0.0, 4.0, 4);
@@ -140,9 +229,21 @@ fn cells_hold_the_mean_of_what_is_in_them() {
     assert_eq!(cells.len(), 16, "one layer of 4 x 4 cells");
     for cell in cells {
         let [x, _, z] = grid.place(cell.number);
-        let expected = [[0.8, 0.0, 0.2], [0.4, 0.3, 0.2], [0.0, 0.6, 0.2], [0.0, 0.6, 0.2]][x as usize];
-        assert_eq!((z, cell.overlap, cell.thin), (0, Overlap::Inside, Overlap::Inside));
-        assert!(cell.color.abs_diff_eq(expected.into(), 1e-6), "column {x}: {}", cell.color);
+        let expected = [
+            [0.8, 0.0, 0.2],
+            [0.4, 0.3, 0.2],
+            [0.0, 0.6, 0.2],
+            [0.0, 0.6, 0.2],
+        ][x as usize];
+        assert_eq!(
+            (z, cell.overlap, cell.thin),
+            (0, Overlap::Inside, Overlap::Inside)
+        );
+        assert!(
+            cell.color.abs_diff_eq(expected.into(), 1e-6),
+            "column {x}: {}",
+            cell.color
+        );
         assert!(cell.normal.abs_diff_eq(Vec3::Z, 1e-6) && (cell.coverage - 1.0).abs() < 1e-6);
     }
 }
@@ -244,10 +345,24 @@ fn closed_meshes_in_a_hundred_poses() {
             leaky_26: (102, 102),
         },
     ];
-    let paint = vec![Material { base_color: [0.7, 0.4, 0.1, 1.0].into(), two_sided: true, ..Material::default() }];
-    let meshes = [("cube", cube(1, 0.0)), ("sphere", cube(8, 1.0)), ("torus", torus(24, 12))]
-        .map(|(name, mesh)| (name, Arc::new(placed(mesh, paint.clone(), poses(POSES)))));
-    let base = [("voxel_dim", "32"), ("volume", "box"), ("volume_size", "(2, 2, 2)"), ("reflectance", "base"), QUICK];
+    let paint = vec![Material {
+        base_color: [0.7, 0.4, 0.1, 1.0].into(),
+        two_sided: true,
+        ..Material::default()
+    }];
+    let meshes = [
+        ("cube", cube(1, 0.0)),
+        ("sphere", cube(8, 1.0)),
+        ("torus", torus(24, 12)),
+    ]
+    .map(|(name, mesh)| (name, Arc::new(placed(mesh, paint.clone(), poses(POSES)))));
+    let base = [
+        ("voxel_dim", "32"),
+        ("volume", "box"),
+        ("volume_size", "(2, 2, 2)"),
+        ("reflectance", "base"),
+        QUICK,
+    ];
     let mut wrong = Vec::new();
     let mut exact_cells: Vec<Vec<Vec<Cell>>> = Vec::new();
     for mode in &modes {
@@ -262,11 +377,23 @@ fn closed_meshes_in_a_hundred_poses() {
                 session.finish().unwrap();
                 let (grid, voxels) = read(&mut session).unwrap();
                 if exact_cells.len() == b {
-                    exact_cells.push((0..POSES).map(|p| cells_of(mesh, p as f64, &grid)).collect());
+                    exact_cells.push(
+                        (0..POSES)
+                            .map(|p| cells_of(mesh, p as f64, &grid))
+                            .collect(),
+                    );
                 }
                 let score = compare(&grid, &exact_cells[b][pose], &voxels).score;
-                assert!(score.enclosed > 500, "{name}, pose {pose}: only {} cells are enclosed", score.enclosed);
-                assert!(score.color_rms < 0.01, "{name}, pose {pose}: one paint, colour error {}", score.color_rms);
+                assert!(
+                    score.enclosed > 500,
+                    "{name}, pose {pose}: only {} cells are enclosed",
+                    score.enclosed
+                );
+                assert!(
+                    score.color_rms < 0.01,
+                    "{name}, pose {pose}: one paint, colour error {}",
+                    score.color_rms
+                );
                 sum.add(&score);
             }
         }
@@ -311,10 +438,17 @@ fn uneven_cells_are_compared_too() {
         ("compute", "compute", QUICK, 1.0, 1.0),
         ("tessellated", "tessellated", QUICK, 0.97, 0.999),
     ];
-    for (warp, (title, voxelizer, mode, least, right)) in
-        ["spline", "logistic"].into_iter().flat_map(|w| modes.map(|m| (w, m)))
+    for (warp, (title, voxelizer, mode, least, right)) in ["spline", "logistic"]
+        .into_iter()
+        .flat_map(|w| modes.map(|m| (w, m)))
     {
-        let settings = [("voxel_dim", "32"), ("warp", warp), ("voxelizer", voxelizer), mode, QUICK];
+        let settings = [
+            ("voxel_dim", "32"),
+            ("warp", warp),
+            ("voxelizer", voxelizer),
+            mode,
+            QUICK,
+        ];
         let mut session = prepare(&lab, &experiment("cornell", (16, 16), &settings), &VOXELS);
         let score = score_of(&mut session, &scene("cornell"));
         let (recall, precision) = (score.recall.unwrap(), score.precision.unwrap());
@@ -329,11 +463,19 @@ fn uneven_cells_are_compared_too() {
 fn leaves_fill_the_cells_that_their_masks_leave() {
     let lab = lab(root());
     for mode in [("voxelizer", "compute"), ("voxelizer", "raster")] {
-        let mut session = prepare(&lab, &experiment("foliage", (16, 16), &[("voxel_dim", "64"), mode, QUICK]), &VOXELS);
+        let mut session = prepare(
+            &lab,
+            &experiment("foliage", (16, 16), &[("voxel_dim", "64"), mode, QUICK]),
+            &VOXELS,
+        );
         let score = score_of(&mut session, &scene("foliage"));
         let (recall, precision) = (score.recall.unwrap(), score.precision.unwrap());
         println!("{}: recall {recall:.4}, precision {precision:.4}", mode.1);
-        assert!(recall >= 0.999 && precision >= 0.97, "{}: recall {recall}, precision {precision}", mode.1);
+        assert!(
+            recall >= 0.999 && precision >= 0.97,
+            "{}: recall {recall}, precision {precision}",
+            mode.1
+        );
     }
     assert_clean(&lab);
 }
@@ -341,10 +483,26 @@ fn leaves_fill_the_cells_that_their_masks_leave() {
 #[test]
 fn the_command_tells_every_mode() {
     let folder = tempfile::tempdir().unwrap();
-    let (json, cubes) = (folder.path().join("voxels.json"), folder.path().join("cubes"));
+    let (json, cubes) = (
+        folder.path().join("voxels.json"),
+        folder.path().join("cubes"),
+    );
     let mut command = conelab(root());
-    command.args(["voxels", "configs/rays.ron", "--scene", "triangles", "--set", "voxel_dim=32", "--size", "64x48"]);
-    command.args(["--all", "--json"]).arg(&json).arg("-o").arg(&cubes);
+    command.args([
+        "voxels",
+        "configs/rays.ron",
+        "--scene",
+        "triangles",
+        "--set",
+        "voxel_dim=32",
+        "--size",
+        "64x48",
+    ]);
+    command
+        .args(["--all", "--json"])
+        .arg(&json)
+        .arg("-o")
+        .arg(&cubes);
     let out = succeeds(&mut command);
     println!("{out}");
     let report: serde_json::Value = serde_json::from_slice(&std::fs::read(&json).unwrap()).unwrap();
@@ -355,32 +513,68 @@ fn the_command_tells_every_mode() {
         assert_eq!(titled(exact)["score"]["holes"], 0);
         assert_eq!(titled(exact)["score"]["extras"], 0);
     }
-    assert!(titled("raster off")["score"]["shapes"]["needle"]["recall"].as_f64().unwrap() < 0.2);
+    assert!(
+        titled("raster off")["score"]["shapes"]["needle"]["recall"]
+            .as_f64()
+            .unwrap()
+            < 0.2
+    );
     let hardware = titled("raster hardware");
     assert!(
-        hardware["score"].is_object() || hardware["skipped"].as_str().unwrap().contains("conservative"),
+        hardware["score"].is_object()
+            || hardware["skipped"]
+                .as_str()
+                .unwrap()
+                .contains("conservative"),
         "{hardware}"
     );
     let red = |name: &str| {
         let image = image::open(cubes.join(name)).unwrap().to_rgb8();
-        image.pixels().filter(|p| p[0] > 60 && p[1] < p[0] / 3).count()
+        image
+            .pixels()
+            .filter(|p| p[0] > 60 && p[1] < p[0] / 3)
+            .count()
     };
-    assert!(red("raster-off.png") > 20 && red("raster-dilate.png") == 0, "holes are red, and only holes");
-    Scene::open(cubes.join("raster-off.glb").to_str().unwrap(), &|_, _| std::ops::ControlFlow::Continue(())).unwrap();
+    assert!(
+        red("raster-off.png") > 20 && red("raster-dilate.png") == 0,
+        "holes are red, and only holes"
+    );
+    Scene::open(cubes.join("raster-off.glb").to_str().unwrap(), &|_, _| {
+        std::ops::ControlFlow::Continue(())
+    })
+    .unwrap();
 }
 
 #[test]
 fn what_cannot_be_compared_is_told() {
     let run = |experiment: &str, args: &[&str]| {
         let mut command = conelab(root());
-        fails(command.args(["voxels", experiment, "--scene", "cornell", "--size", "16x16"]).args(args))
+        fails(
+            command
+                .args([
+                    "voxels", experiment, "--scene", "cornell", "--size", "16x16",
+                ])
+                .args(args),
+        )
     };
     let folder = tempfile::tempdir().unwrap();
     let warps = folder.path().join("warps.ron");
-    std::fs::write(&warps, "(graph: \"warps.ron\", scene: \"cornell\", params: { \"warp\": \"perspective\" })")
-        .unwrap();
-    let frusta = run(warps.to_str().unwrap(), &["--set", "voxel_dim=32", "--set", "fallback=false"]);
-    assert!(frusta.contains("the cells are curved, no boxes"), "{frusta}");
+    std::fs::write(
+        &warps,
+        "(graph: \"warps.ron\", scene: \"cornell\", params: { \"warp\": \"perspective\" })",
+    )
+    .unwrap();
+    let frusta = run(
+        warps.to_str().unwrap(),
+        &["--set", "voxel_dim=32", "--set", "fallback=false"],
+    );
+    assert!(
+        frusta.contains("the cells are curved, no boxes"),
+        "{frusta}"
+    );
     let nothing = run("configs/rays.ron", &["--set", "voxelizer=points"]);
-    assert!(nothing.contains("raster") && nothing.contains("points"), "{nothing}");
+    assert!(
+        nothing.contains("raster") && nothing.contains("points"),
+        "{nothing}"
+    );
 }

@@ -17,7 +17,10 @@ use tempfile::TempDir;
 /// An experiment of the graph that measures warps.
 fn experiment(scene: &str, size: (u32, u32), settings: &[(&str, &str)]) -> Experiment {
     let graph = common::graph_with(&[settings, &[("volume_offset", "")]].concat());
-    Experiment { graph, ..common::experiment(scene, size, settings) }
+    Experiment {
+        graph,
+        ..common::experiment(scene, size, settings)
+    }
 }
 
 /// What is known of a warp besides its shader.
@@ -37,23 +40,51 @@ struct Warp {
 }
 
 const WARPS: [Warp; 9] = [
-    Warp { title: "none", set: &[], shape: Shape::Box(|x| x) },
-    Warp { title: "spline 0.05", set: &[SPLINE, ("warp_alpha", "0.05")], shape: Shape::Box(|x| spline(0.05, x)) },
-    Warp { title: "spline 0.25", set: &[SPLINE, ("warp_alpha", "0.25")], shape: Shape::Box(|x| spline(0.25, x)) },
-    Warp { title: "spline 1", set: &[SPLINE, ("warp_alpha", "1.0")], shape: Shape::Box(|x| spline(1.0, x)) },
+    Warp {
+        title: "none",
+        set: &[],
+        shape: Shape::Box(|x| x),
+    },
+    Warp {
+        title: "spline 0.05",
+        set: &[SPLINE, ("warp_alpha", "0.05")],
+        shape: Shape::Box(|x| spline(0.05, x)),
+    },
+    Warp {
+        title: "spline 0.25",
+        set: &[SPLINE, ("warp_alpha", "0.25")],
+        shape: Shape::Box(|x| spline(0.25, x)),
+    },
+    Warp {
+        title: "spline 1",
+        set: &[SPLINE, ("warp_alpha", "1.0")],
+        shape: Shape::Box(|x| spline(1.0, x)),
+    },
     Warp {
         title: "logistic 0.5",
         set: &[LOGISTIC, ("warp_steepness", "0.5")],
         shape: Shape::Box(|x| logistic(0.5, x)),
     },
-    Warp { title: "logistic 8", set: &[LOGISTIC, ("warp_steepness", "8.0")], shape: Shape::Box(|x| logistic(8.0, x)) },
+    Warp {
+        title: "logistic 8",
+        set: &[LOGISTIC, ("warp_steepness", "8.0")],
+        shape: Shape::Box(|x| logistic(8.0, x)),
+    },
     Warp {
         title: "logistic 20",
         set: &[LOGISTIC, ("warp_steepness", "20.0")],
         shape: Shape::Box(|x| logistic(20.0, x)),
     },
-    Warp { title: "perspective", set: &[("warp", "perspective")], shape: Shape::Frustum },
-    Warp { title: "spherical", set: &[("warp", "spherical")], shape: Shape::Sphere },
+    Warp {
+        title: "perspective",
+        set: &[("warp", "perspective")],
+        shape: Shape::Frustum,
+    },
+    Warp {
+        title: "spherical",
+        set: &[("warp", "spherical")],
+        shape: Shape::Sphere,
+    },
 ];
 
 const SPLINE: (&str, &str) = ("warp", "spline");
@@ -163,11 +194,17 @@ fn home() -> TempDir {
 fn mapping_session(lab: &Lab, settings: &[(&str, &str)]) -> Session {
     let mut experiment = experiment("cornell", (16, 16), &BASE);
     experiment.graph = "mapping.ron".into();
-    experiment.params.extend(
-        settings
-            .iter()
-            .map(|(name, value)| (Loc { value: (*name).to_string(), at: At::default() }, (*value).to_string())),
-    );
+    experiment
+        .params
+        .extend(settings.iter().map(|(name, value)| {
+            (
+                Loc {
+                    value: (*name).to_string(),
+                    at: At::default(),
+                },
+                (*value).to_string(),
+            )
+        }));
     prepare(lab, &experiment, &["mapping"])
 }
 
@@ -184,9 +221,22 @@ fn mapping(lab: &Lab, session: &mut Session) -> Mapping {
     session.finish().unwrap();
     assert_clean(lab);
     let bytes = session.buffer("mapping").unwrap();
-    let numbers: Vec<f64> = bytes.as_chunks::<4>().0.iter().map(|b| f64::from(f32::from_ne_bytes(*b))).collect();
-    assert!(numbers.iter().all(|n| n.is_finite()), "every point has a place");
-    let vectors: Vec<DVec3> = numbers.as_chunks::<4>().0.iter().map(|v| DVec3::new(v[0], v[1], v[2])).collect();
+    let numbers: Vec<f64> = bytes
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .map(|b| f64::from(f32::from_ne_bytes(*b)))
+        .collect();
+    assert!(
+        numbers.iter().all(|n| n.is_finite()),
+        "every point has a place"
+    );
+    let vectors: Vec<DVec3> = numbers
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .map(|v| DVec3::new(v[0], v[1], v[2]))
+        .collect();
     let (rows, rest) = vectors.split_at(12 * POINTS);
     let (lines, rest) = rest.split_at(2 * 3 * LINE);
     let (ends, density) = rest.split_at(3 * 27);
@@ -221,8 +271,15 @@ fn place(warp: &Warp, camera: &PlacedCamera, u: DVec3) -> DVec3 {
             eye + (0.5 + (FAR - 0.5) * u.z) * (ahead + half * across)
         }
         Shape::Sphere => {
-            let (around, down) = (2.0 * std::f64::consts::PI * (u.x - 0.5), std::f64::consts::PI * u.y);
-            let way = DVec3::new(down.sin() * around.cos(), down.cos(), down.sin() * around.sin());
+            let (around, down) = (
+                2.0 * std::f64::consts::PI * (u.x - 0.5),
+                std::f64::consts::PI * u.y,
+            );
+            let way = DVec3::new(
+                down.sin() * around.cos(),
+                down.cos(),
+                down.sin() * around.sin(),
+            );
             eye + 0.5 * (FAR / 0.5).powf(u.z) * way
         }
     }
@@ -238,7 +295,11 @@ fn every_warp_is_a_bijection() {
             session.place_camera(&camera);
             let mapping = mapping(&lab, &mut session);
             let title = format!("{} from {:?}", warp.title, camera.eye);
-            let size = if matches!(warp.shape, Shape::Box(_)) { SIZE } else { FAR };
+            let size = if matches!(warp.shape, Shape::Box(_)) {
+                SIZE
+            } else {
+                FAR
+            };
 
             let mut worst = (0.0f64, 0.0f64, 0.0f64, 0.0f64);
             for [u, back, p, image, again, a0, a1, a2, ..] in &mapping.rows {
@@ -257,38 +318,71 @@ fn every_warp_is_a_bijection() {
                 if let Shape::Box(w) = &warp.shape {
                     let eye = place(warp, &camera, DVec3::splat(0.5));
                     let x = (*p - eye) / SIZE + 0.5;
-                    worst.3 = worst.3.max((*image - DVec3::new(w(x.x), w(x.y), w(x.z))).abs().max_element());
+                    worst.3 = worst.3.max(
+                        (*image - DVec3::new(w(x.x), w(x.y), w(x.z)))
+                            .abs()
+                            .max_element(),
+                    );
                 }
             }
             println!(
                 "{title}: volume and back {:.1e}, world and back {:.1e} of the volume's size, formula {:.1e}",
                 worst.0, worst.1, worst.3
             );
-            assert!(worst.0 <= 1e-5, "{title}: to the world and back {}", worst.0);
-            assert!(worst.2 <= 1.0, "{title}: to the volume and back {}, {} of what floats allow", worst.1, worst.2);
+            assert!(
+                worst.0 <= 1e-5,
+                "{title}: to the world and back {}",
+                worst.0
+            );
+            assert!(
+                worst.2 <= 1.0,
+                "{title}: to the volume and back {}, {} of what floats allow",
+                worst.1,
+                worst.2
+            );
             assert!(worst.3 <= 1e-5, "{title}: {} from the formula", worst.3);
 
             for (axis, line) in mapping.lines.as_chunks::<LINE>().0.iter().enumerate() {
                 let whole = line[LINE - 1][0] - line[0][0];
                 let circle = matches!(warp.shape, Shape::Sphere) && axis < 2;
                 let rises = |w: &[[DVec3; 2]]| {
-                    (circle || (w[1][0] - w[0][0]).dot(whole) > 0.0) && w[1][1][axis] >= w[0][1][axis]
+                    (circle || (w[1][0] - w[0][0]).dot(whole) > 0.0)
+                        && w[1][1][axis] >= w[0][1][axis]
                 };
                 // Around the whole circle back to where it begins.
-                let line = if circle { &line[1..LINE - 1] } else { &line[..] };
-                assert!(line.windows(2).all(rises), "{title}: not monotonic along axis {axis}");
+                let line = if circle {
+                    &line[1..LINE - 1]
+                } else {
+                    &line[..]
+                };
+                assert!(
+                    line.windows(2).all(rises),
+                    "{title}: not monotonic along axis {axis}"
+                );
             }
             for (i, [at, image, past]) in mapping.ends.iter().enumerate() {
                 let end = 0.5 * DVec3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64);
                 let off = at.distance(place(warp, &camera, end)) / size;
-                assert!(off < 2e-6, "{title}: {end} lies at {at}, {off} of the size off");
+                assert!(
+                    off < 2e-6,
+                    "{title}: {end} lies at {at}, {off} of the size off"
+                );
                 if let Shape::Sphere = warp.shape {
-                    assert!((image.z - end.z).abs() <= 1e-5, "{title}: {end} comes back as {image}");
+                    assert!(
+                        (image.z - end.z).abs() <= 1e-5,
+                        "{title}: {end} comes back as {image}"
+                    );
                     continue;
                 }
-                assert!((*image - end).abs().max_element() <= 1e-5, "{title}: {end} comes back as {image}");
+                assert!(
+                    (*image - end).abs().max_element() <= 1e-5,
+                    "{title}: {end} comes back as {image}"
+                );
                 let outside = past.min_element() < 0.0 || past.max_element() > 1.0;
-                assert!(outside || end == DVec3::splat(0.5), "{title}: past {end} is {past}, inside");
+                assert!(
+                    outside || end == DVec3::splat(0.5),
+                    "{title}: past {end} is {past}, inside"
+                );
             }
         }
     }
@@ -315,9 +409,16 @@ fn cells_are_as_long_as_finite_differences_say() {
                 worst = worst.max(a.distance(d) / (0.003 * a.length() + 2e-5));
             }
         }
-        println!("{}: {rows} points, {worst:.2} of what is allowed", warp.title);
+        println!(
+            "{}: {rows} points, {worst:.2} of what is allowed",
+            warp.title
+        );
         assert!(rows > 50_000, "{}: {rows} points", warp.title);
-        assert!(worst < 1.0, "{}: cells and differences disagree, {worst} of what is allowed", warp.title);
+        assert!(
+            worst < 1.0,
+            "{}: cells and differences disagree, {worst} of what is allowed",
+            warp.title
+        );
     }
 }
 
@@ -331,50 +432,95 @@ fn density_is_told_by_hue() {
         let (mut low, mut high) = (0.5, 1.0);
         for _ in 0..50 {
             let middle = 0.5 * (low + high);
-            if slope(middle) > wanted { low = middle } else { high = middle }
+            if slope(middle) > wanted {
+                low = middle
+            } else {
+                high = middle
+            }
         }
         low
     };
     let places = [2.0, 1.0, 0.5].map(at);
     let asked = format!("({}, {}, {})", places[0], places[1], places[2]);
-    let mut session = mapping_session(&lab, &[LOGISTIC, ("warp_steepness", "20.0"), ("density_at", &asked)]);
+    let mut session = mapping_session(
+        &lab,
+        &[LOGISTIC, ("warp_steepness", "20.0"), ("density_at", &asked)],
+    );
     let found = mapping(&lab, &mut session).density;
     println!("slope 2, 1, 1/2 at {asked}: {found:?}");
     for (colour, expected) in found.iter().zip([DVec3::Z, DVec3::Y, DVec3::X]) {
-        assert!(colour.abs_diff_eq(expected, 0.01), "{colour} is not {expected}");
+        assert!(
+            colour.abs_diff_eq(expected, 0.01),
+            "{colour} is not {expected}"
+        );
     }
 
     // In the picture: green alone without a warp; with one, bluer in the middle than at the sides.
     let view = |warp: &str| -> Vec<[f32; 4]> {
-        let box_ = [("volume", "box"), ("volume_center", "(2.78, 2.74, 2.8)"), ("volume_size", "(6, 6, 6)")];
-        let settings = [&box_[..], &[("voxel_dim", "32"), ("density", "surfaces"), ("warp", warp)]].concat();
-        let mut session = prepare(&lab, &experiment("cornell", (32, 32), &settings), &["inspected"]);
+        let box_ = [
+            ("volume", "box"),
+            ("volume_center", "(2.78, 2.74, 2.8)"),
+            ("volume_size", "(6, 6, 6)"),
+        ];
+        let settings = [
+            &box_[..],
+            &[("voxel_dim", "32"), ("density", "surfaces"), ("warp", warp)],
+        ]
+        .concat();
+        let mut session = prepare(
+            &lab,
+            &experiment("cornell", (32, 32), &settings),
+            &["inspected"],
+        );
         session.frame(0.0).unwrap();
         session.finish().unwrap();
         floats(&mut session, "inspected", 0)
     };
     let hues = |texels: &[[f32; 4]], x: std::ops::Range<usize>| {
-        let inside = texels.iter().enumerate().filter(|(i, t)| x.contains(&(i % 32)) && t[0] + t[1] + t[2] > 0.0);
-        let sum = inside.map(|(_, t)| Vec3::new(t[0], t[1], t[2]) / (t[0] + t[1] + t[2])).sum::<Vec3>();
+        let inside = texels
+            .iter()
+            .enumerate()
+            .filter(|(i, t)| x.contains(&(i % 32)) && t[0] + t[1] + t[2] > 0.0);
+        let sum = inside
+            .map(|(_, t)| Vec3::new(t[0], t[1], t[2]) / (t[0] + t[1] + t[2]))
+            .sum::<Vec3>();
         sum / (sum.x + sum.y + sum.z)
     };
     let even = view("none");
-    assert!(hues(&even, 0..32).abs_diff_eq(Vec3::Y, 1e-3), "{}", hues(&even, 0..32));
+    assert!(
+        hues(&even, 0..32).abs_diff_eq(Vec3::Y, 1e-3),
+        "{}",
+        hues(&even, 0..32)
+    );
     let warped = view("spline");
     let (middle, side) = (hues(&warped, 14..18), hues(&warped, 2..5));
     println!("spline: {middle:.2} in the middle of the picture, {side:.2} at its side");
-    assert!(middle.z > 0.3 && middle.x < 0.05 && side.x > 0.3 && side.z < 0.05, "{middle} {side}");
+    assert!(
+        middle.z > 0.3 && middle.x < 0.05 && side.x > 0.3 && side.z < 0.05,
+        "{middle} {side}"
+    );
 }
 
 /// The voxels of a frame against the exact cells.
 fn score(lab: &Lab, scene: &Arc<Scene>, settings: &[(&str, &str)]) -> Score {
     let experiment = experiment("cornell", (16, 16), settings);
-    let (mut session, _) = lab.prepare(&experiment, scene.clone(), conelab::measure::oracle::wanted).unwrap();
+    let (mut session, _) = lab
+        .prepare(&experiment, scene.clone(), conelab::measure::oracle::wanted)
+        .unwrap();
     session.frame(0.0).unwrap();
     session.finish().unwrap();
-    assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new(), "{settings:?}");
+    assert_eq!(
+        session.failed_checks().unwrap(),
+        Vec::<String>::new(),
+        "{settings:?}"
+    );
     let (grid, voxels) = read(&mut session).unwrap();
-    compare(&grid, &exact(&triangles_of(scene, 0.0), &Surfaces::new(scene), &grid), &voxels).score
+    compare(
+        &grid,
+        &exact(&triangles_of(scene, 0.0), &Surfaces::new(scene), &grid),
+        &voxels,
+    )
+    .score
 }
 
 const OFF: [(&str, &str); 2] = [("voxelizer", "raster"), ("conservative", "off")];
@@ -382,16 +528,33 @@ const OFF: [(&str, &str); 2] = [("voxelizer", "raster"), ("conservative", "off")
 #[test]
 fn no_warp_loses_voxels() {
     let lab = lab(root());
-    let paint = vec![Material { base_color: [0.7, 0.4, 0.1, 1.0].into(), two_sided: true, ..Material::default() }];
+    let paint = vec![Material {
+        base_color: [0.7, 0.4, 0.1, 1.0].into(),
+        two_sided: true,
+        ..Material::default()
+    }];
     let mut torus = placed(torus(24, 12), paint, Vec::new());
-    torus.instances[0].transform = glam::Mat4::from_quat(Quat::from_xyzw(0.3, -0.5, 0.2, 0.8).normalize());
-    let scenes = [("cornell", scene("cornell")), ("turned torus", Arc::new(torus))];
+    torus.instances[0].transform =
+        glam::Mat4::from_quat(Quat::from_xyzw(0.3, -0.5, 0.2, 0.8).normalize());
+    let scenes = [
+        ("cornell", scene("cornell")),
+        ("turned torus", Arc::new(torus)),
+    ];
     let modes = [
         ("off", OFF),
         ("msaa", [("voxelizer", "raster"), ("conservative", "msaa")]),
-        ("dilate", [("voxelizer", "raster"), ("conservative", "dilate")]),
-        ("tessellated", [("voxelizer", "tessellated"), ("tess_rate", "1.0")]),
-        ("compute", [("voxelizer", "compute"), ("conservative", "off")]),
+        (
+            "dilate",
+            [("voxelizer", "raster"), ("conservative", "dilate")],
+        ),
+        (
+            "tessellated",
+            [("voxelizer", "tessellated"), ("tess_rate", "1.0")],
+        ),
+        (
+            "compute",
+            [("voxelizer", "compute"), ("conservative", "off")],
+        ),
     ];
     let base = [("voxel_dim", "48"), ("shadow_dim", "256")];
     for (name, scene) in &scenes {
@@ -400,8 +563,8 @@ fn no_warp_loses_voxels() {
             (score.recall.unwrap(), score.thin_recall.unwrap())
         };
         for (mode, set) in modes {
-            let [even, spline, logistic] =
-                ["none", "spline", "logistic"].map(|warp| recall(&[&set[..], &[("warp", warp)]].concat()));
+            let [even, spline, logistic] = ["none", "spline", "logistic"]
+                .map(|warp| recall(&[&set[..], &[("warp", warp)]].concat()));
             println!(
                 "{name}, {mode}: recall and thin recall {even:.4?} without a warp, spline {spline:.4?}, logistic {logistic:.4?}"
             );
@@ -415,10 +578,16 @@ fn no_warp_loses_voxels() {
         }
         // The thesis's cracks (Figure 4.10): pixels of the grid where cells are denser.
         for warp in ["spline", "logistic"] {
-            let [scaled, grid] = ["scaled", "grid"]
-                .map(|viewport| recall(&[&OFF[..], &[("warp", warp), ("warp_viewport", viewport)]].concat()).0);
-            println!("{name}, {warp}: recall {scaled:.4} with the scaled viewport, {grid:.4} with the grid's");
-            assert!(grid < scaled - 0.2, "{name}, {warp}: no cracks, {grid} against {scaled}");
+            let [scaled, grid] = ["scaled", "grid"].map(|viewport| {
+                recall(&[&OFF[..], &[("warp", warp), ("warp_viewport", viewport)]].concat()).0
+            });
+            println!(
+                "{name}, {warp}: recall {scaled:.4} with the scaled viewport, {grid:.4} with the grid's"
+            );
+            assert!(
+                grid < scaled - 0.2,
+                "{name}, {warp}: no cracks, {grid} against {scaled}"
+            );
         }
     }
     assert_clean(&lab);
@@ -428,7 +597,11 @@ fn no_warp_loses_voxels() {
 fn the_list_of_fragments_is_long_enough_for_every_slope() {
     let lab = lab(root());
     let base = [("voxel_dim", "64"), ("shadow_dim", "256")];
-    let volume = [("volume", "box"), ("volume_center", "(2.78, 2.74, 2.8)"), ("volume_size", "(6, 6, 6)")];
+    let volume = [
+        ("volume", "box"),
+        ("volume_center", "(2.78, 2.74, 2.8)"),
+        ("volume_size", "(6, 6, 6)"),
+    ];
     let warps = [
         ("none", vec![]),
         ("spline 0.05", vec![SPLINE, ("warp_alpha", "0.05")]),
@@ -437,28 +610,60 @@ fn the_list_of_fragments_is_long_enough_for_every_slope() {
         ("perspective", vec![("warp", "perspective")]),
     ];
     let modes = [
-        ("off", vec![("voxelizer", "raster"), ("conservative", "off")]),
-        ("msaa", vec![("voxelizer", "raster"), ("conservative", "msaa")]),
-        ("dilate", vec![("voxelizer", "raster"), ("conservative", "dilate")]),
+        (
+            "off",
+            vec![("voxelizer", "raster"), ("conservative", "off")],
+        ),
+        (
+            "msaa",
+            vec![("voxelizer", "raster"), ("conservative", "msaa")],
+        ),
+        (
+            "dilate",
+            vec![("voxelizer", "raster"), ("conservative", "dilate")],
+        ),
         ("tessellated", vec![("voxelizer", "tessellated")]),
-        ("tessellated x2", vec![("voxelizer", "tessellated"), ("tess_rate", "2.0")]),
+        (
+            "tessellated x2",
+            vec![("voxelizer", "tessellated"), ("tess_rate", "2.0")],
+        ),
     ];
     let mut full = Vec::new();
     for ((warp, set), (mode, how)) in warps.iter().flat_map(|w| modes.iter().map(move |m| (w, m))) {
         let settings = [&base[..], &volume, set, how].concat();
-        let mut session = prepare(&lab, &experiment("cornell", (16, 16), &settings), &["voxelColor"]);
+        let mut session = prepare(
+            &lab,
+            &experiment("cornell", (16, 16), &settings),
+            &["voxelColor"],
+        );
         session.frame(0.0).unwrap();
         session.finish().unwrap();
-        let words: Vec<u32> =
-            session.buffer("voxelCounter").unwrap().as_chunks::<4>().0.iter().map(|b| u32::from_ne_bytes(*b)).collect();
-        let list = session.program.plan.buffers
-            [session.graph.buffers.iter().position(|b| b.0 == "voxelFragments").unwrap()]
+        let words: Vec<u32> = session
+            .buffer("voxelCounter")
+            .unwrap()
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .map(|b| u32::from_ne_bytes(*b))
+            .collect();
+        let list = session.program.plan.buffers[session
+            .graph
+            .buffers
+            .iter()
+            .position(|b| b.0 == "voxelFragments")
+            .unwrap()]
         .size
             / 16;
         let fragments = words[2]; // shaders/voxels/voxels.glsl
         println!("{warp}, {mode}: {fragments} fragments in a list of {list}");
         assert!(fragments > 0, "{warp}, {mode}");
-        full.extend(session.failed_checks().unwrap().iter().map(|f| format!("{warp}, {mode}: {f}")));
+        full.extend(
+            session
+                .failed_checks()
+                .unwrap()
+                .iter()
+                .map(|f| format!("{warp}, {mode}: {f}")),
+        );
     }
     assert_eq!(full, Vec::<String>::new());
     assert_clean(&lab);
@@ -482,7 +687,11 @@ fn cones_go_by_the_cells_around_them() {
         ("diffuse_aperture", "4.0"),
         ("probe", "(32.5, 44.5)"),
     ];
-    let mut session = prepare(&lab, &experiment("cornell", (64, 48), &settings), &["coneSamples"]);
+    let mut session = prepare(
+        &lab,
+        &experiment("cornell", (64, 48), &settings),
+        &["coneSamples"],
+    );
     session.frame(0.0).unwrap();
     session.finish().unwrap();
     let table = session.table(0).unwrap();
@@ -505,8 +714,14 @@ fn cones_go_by_the_cells_around_them() {
     };
     // They start a local cell above the floor.
     let bytes = session.buffer("coneSamples").unwrap();
-    let words: Vec<f32> = bytes.as_chunks::<4>().0[..12].iter().map(|b| f32::from_ne_bytes(*b)).collect();
-    let (surface, origin) = (Vec3::from_slice(&words[4..7]).as_dvec3(), Vec3::from_slice(&words[8..11]).as_dvec3());
+    let words: Vec<f32> = bytes.as_chunks::<4>().0[..12]
+        .iter()
+        .map(|b| f32::from_ne_bytes(*b))
+        .collect();
+    let (surface, origin) = (
+        Vec3::from_slice(&words[4..7]).as_dvec3(),
+        Vec3::from_slice(&words[8..11]).as_dvec3(),
+    );
     let above = local(surface, DVec3::Y);
     assert!(
         (origin - surface).abs_diff_eq(DVec3::Y * above, 0.01 * above),
@@ -520,14 +735,23 @@ fn cones_go_by_the_cells_around_them() {
         }
         let (p, d) = (position(row), (position(next) - position(row)).normalize());
         let cell = local(p, d);
-        let at = format!("cone {}, sample {}", number(row, "cone"), number(row, "sample"));
+        let at = format!(
+            "cone {}, sample {}",
+            number(row, "cone"),
+            number(row, "sample")
+        );
         let near = |a: f64, b: f64| (a / b - 1.0).abs() < 0.01;
         // Narrow cones read whole levels. Cones above 12 degrees read none that contains the floor they leave: a
         // lookup reaches 1.5 cells to each side.
         let mut level = (2.0 * number(row, "radius") / cell).max(1.0).log2();
         if number(row, "radius") > 0.105 * p.distance(origin) {
             let height = p.y - surface.y;
-            level = level.min((height / (1.5 * local(p, DVec3::Y).max(above))).max(1.0).log2().floor());
+            level = level.min(
+                (height / (1.5 * local(p, DVec3::Y).max(above)))
+                    .max(1.0)
+                    .log2()
+                    .floor(),
+            );
         }
         assert!(
             (number(row, "level") - level.min(6.0)).abs() < 0.52,
@@ -535,14 +759,21 @@ fn cones_go_by_the_cells_around_them() {
             number(row, "level")
         );
         let coarse = cell * number(row, "level").exp2();
-        assert!(near(number(row, "cell"), coarse), "{at}: a cell of {} m, not {coarse}", number(row, "cell"));
+        assert!(
+            near(number(row, "cell"), coarse),
+            "{at}: a cell of {} m, not {coarse}",
+            number(row, "cell")
+        );
         // Steps are one and a half cells, and twice as long in empty space.
         let (step, twice) = (number(row, "step"), number(row, "opacity") == 0.0);
         assert!(
             near(step, 1.5 * coarse) || twice && near(step, 3.0 * coarse),
             "{at}: a step of {step} m in {coarse} m"
         );
-        assert!(near(p.distance(position(next)), step), "{at}: the next sample is elsewhere");
+        assert!(
+            near(p.distance(position(next)), step),
+            "{at}: the next sample is elsewhere"
+        );
         if number(row, "opacity") < 1e-5 {
             empty += 1;
             cells.push(cell);
@@ -550,12 +781,24 @@ fn cones_go_by_the_cells_around_them() {
         }
         // Opacity is that of a step, in cells.
         let before = number(row, "transmittance") + number(row, "alpha");
-        let taken = (number(row, "opacity") * number(row, "step") / number(row, "cell")).min(before);
-        assert!((number(row, "alpha") - taken).abs() < 2e-3, "{at}: takes {}, not {taken}", number(row, "alpha"));
+        let taken =
+            (number(row, "opacity") * number(row, "step") / number(row, "cell")).min(before);
+        assert!(
+            (number(row, "alpha") - taken).abs() < 2e-3,
+            "{at}: takes {}, not {taken}",
+            number(row, "alpha")
+        );
     }
     cells.sort_by(f64::total_cmp);
-    println!("{empty} samples in empty space, in cells of {:.3} to {:.3} m", cells[0], cells[empty - 1]);
-    assert!(empty > 20 && cells[empty - 1] > 1.4 * cells[0], "{empty} samples, all in cells of one size");
+    println!(
+        "{empty} samples in empty space, in cells of {:.3} to {:.3} m",
+        cells[0],
+        cells[empty - 1]
+    );
+    assert!(
+        empty > 20 && cells[empty - 1] > 1.4 * cells[0],
+        "{empty} samples, all in cells of one size"
+    );
     assert_clean(&lab);
 }
 
@@ -563,11 +806,20 @@ fn cones_go_by_the_cells_around_them() {
 fn curved_cells_that_end_before_they_begin_are_refused() {
     let lab = lab(root());
     for (warp, refused) in [("perspective", true), ("spherical", true), ("none", false)] {
-        let settings = [("warp", warp), ("warp_near", "5"), ("warp_far", "5"), ("voxel_dim", "16")];
+        let settings = [
+            ("warp", warp),
+            ("warp_near", "5"),
+            ("warp_far", "5"),
+            ("voxel_dim", "16"),
+        ];
         let experiment = experiment("cornell", (16, 16), &settings);
-        let error = lab.prepare(&experiment, scene("cornell"), |_| Ok(Vec::new())).err().map(|e| e.to_string());
-        let told =
-            error.as_deref().is_some_and(|e| e.contains("passes/parts/warp.ron:") && e.contains("above warp_near"));
+        let error = lab
+            .prepare(&experiment, scene("cornell"), |_| Ok(Vec::new()))
+            .err()
+            .map(|e| e.to_string());
+        let told = error
+            .as_deref()
+            .is_some_and(|e| e.contains("passes/parts/warp.ron:") && e.contains("above warp_near"));
         assert_eq!(told, refused, "{warp}: {error:?}");
         assert!(refused || error.is_none(), "{warp}: {error:?}");
     }

@@ -16,12 +16,18 @@ fn model(folder: &Path) {
     let quad = "mtllib quad.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
                 usemtl painted\nf 1/1 2/2 3/3 4/4\n";
     std::fs::write(folder.join("quad.obj"), quad).unwrap();
-    std::fs::write(folder.join("quad.mtl"), "newmtl painted\nmap_Kd pictures/paint.png\n").unwrap();
+    std::fs::write(
+        folder.join("quad.mtl"),
+        "newmtl painted\nmap_Kd pictures/paint.png\n",
+    )
+    .unwrap();
     paint(&folder.join("pictures/paint.png"), [200, 0, 0]);
 }
 
 fn paint(file: &Path, color: [u8; 3]) {
-    image::RgbImage::from_pixel(4, 4, image::Rgb(color)).save(file).unwrap();
+    image::RgbImage::from_pixel(4, 4, image::Rgb(color))
+        .save(file)
+        .unwrap();
 }
 
 fn experiment(scene: &str) -> String {
@@ -36,8 +42,9 @@ fn loads(driver: &mut WindowDriver, what: &str, change: impl FnOnce()) {
     driver.resting(0);
     let mark = driver.now();
     change();
-    let event =
-        driver.wait(mark, &format!("load after {what}"), |e| e["event"] == "loaded" || e["event"] == "load failed");
+    let event = driver.wait(mark, &format!("load after {what}"), |e| {
+        e["event"] == "loaded" || e["event"] == "load failed"
+    });
     assert_eq!(event["event"], "loaded", "{what}: {event}");
 }
 
@@ -46,7 +53,11 @@ fn every_file(variables: &[(&str, &str)]) {
     let scenes = TempDir::new().unwrap();
     let real = TempDir::new().unwrap();
     model(real.path());
-    std::os::unix::fs::symlink(real.path().join("quad.obj"), scenes.path().join("linked.obj")).unwrap();
+    std::os::unix::fs::symlink(
+        real.path().join("quad.obj"),
+        scenes.path().join("linked.obj"),
+    )
+    .unwrap();
     for part in ["quad.mtl", "pictures"] {
         std::os::unix::fs::symlink(real.path().join(part), scenes.path().join(part)).unwrap();
     }
@@ -57,24 +68,36 @@ fn every_file(variables: &[(&str, &str)]) {
     std::fs::copy(&file, &scene).unwrap();
     let folders = scenes.path().to_string_lossy().into_owned();
     let variables = [&[("CONELAB_SCENES", folders.as_str())], variables].concat();
-    let mut driver = WindowDriver::open_with(&experiment(&scene.to_string_lossy()), &["--size", "160x120"], &variables);
+    let mut driver = WindowDriver::open_with(
+        &experiment(&scene.to_string_lossy()),
+        &["--size", "160x120"],
+        &variables,
+    );
     driver.first_picture();
     let real = real.path();
-    loads(&mut driver, "a texture in a subfolder", || paint(&real.join("pictures/paint.png"), [0, 200, 0]));
+    loads(&mut driver, "a texture in a subfolder", || {
+        paint(&real.join("pictures/paint.png"), [0, 200, 0])
+    });
     loads(&mut driver, "the library", || {
         std::fs::write(real.join("quad.mtl"), "newmtl painted\nKd 0.1 0.2 0.3\n").unwrap();
     });
-    loads(&mut driver, "the target of a link in CONELAB_SCENES", || {
-        let text = std::fs::read_to_string(real.join("quad.obj")).unwrap();
-        std::fs::write(real.join("quad.obj"), text + "v 0 0 1\nf 1 2 5\n").unwrap();
-    });
+    loads(
+        &mut driver,
+        "the target of a link in CONELAB_SCENES",
+        || {
+            let text = std::fs::read_to_string(real.join("quad.obj")).unwrap();
+            std::fs::write(real.join("quad.obj"), text + "v 0 0 1\nf 1 2 5\n").unwrap();
+        },
+    );
     // A model that cannot be read is looked at again when it is mended.
     let good = std::fs::read(real.join("quad.obj")).unwrap();
     driver.resting(0);
     let mark = driver.now();
     std::fs::write(real.join("quad.obj"), "v 0 0 0\nf 1 2 3\n").unwrap();
     driver.event(mark, "load failed");
-    loads(&mut driver, "a mended model", || std::fs::write(real.join("quad.obj"), good).unwrap());
+    loads(&mut driver, "a mended model", || {
+        std::fs::write(real.join("quad.obj"), good).unwrap()
+    });
     loads(&mut driver, "the scene file", || {
         std::fs::write(&scene, "(models: [(file: \"linked.obj\")], sky: (1, 0, 0))").unwrap();
     });

@@ -26,7 +26,9 @@ fn small() -> WindowDriver {
 }
 
 fn number(event: &Value, name: &str) -> f64 {
-    event[name].as_f64().unwrap_or_else(|| panic!("no {name} in {event}"))
+    event[name]
+        .as_f64()
+        .unwrap_or_else(|| panic!("no {name} in {event}"))
 }
 
 fn median(list: &mut [f64]) -> f64 {
@@ -50,7 +52,11 @@ fn a_slider_changes_the_picture_and_undo_brings_it_back() {
 
     // It is the picture that the command line makes.
     let path = driver.home.path().join("first.png");
-    succeeds(conelab(driver.home.path()).args(["render", "configs/opened.ron", "-o"]).arg(&path));
+    succeeds(
+        conelab(driver.home.path())
+            .args(["render", "configs/opened.ron", "-o"])
+            .arg(&path),
+    );
     let rendered = image::open(path).unwrap().to_rgba8();
     assert_eq!(fingerprint(&rendered), first);
     assert_eq!(fingerprint(&shot.rgba), first, "texel for texel");
@@ -103,11 +109,15 @@ fn a_slider_changes_the_picture_and_undo_brings_it_back() {
     let mark = driver.now();
     driver.click("", "scene: cornell");
     driver.click("", "triangles");
-    driver.wait(mark, "another scene", |e| e["event"] == "loaded" && e["scene"] == "triangles");
+    driver.wait(mark, "another scene", |e| {
+        e["event"] == "loaded" && e["scene"] == "triangles"
+    });
     driver.other_picture(mark, 0, &first);
     let mark = driver.now();
     driver.click("Button", "undo");
-    driver.wait(mark, "the first scene", |e| e["event"] == "loaded" && e["scene"] == "cornell");
+    driver.wait(mark, "the first scene", |e| {
+        e["event"] == "loaded" && e["scene"] == "cornell"
+    });
     driver.close();
 }
 
@@ -128,7 +138,11 @@ fn a_saved_shader_is_shown_and_a_broken_one_leaves_the_last_picture() {
     let dim = driver.other_picture(mark, 0, &first);
     driver.shows(&dim);
     let built = driver.event(mark, "built");
-    assert_eq!(number(&built, "rebuilt"), 1.0, "only the pass that shows: {built}");
+    assert_eq!(
+        number(&built, "rebuilt"),
+        1.0,
+        "only the pass that shows: {built}"
+    );
     assert!(number(&built, "kept") > 5.0, "{built}");
     let mark = driver.now();
     driver.write("shaders/display/display.comp", &display);
@@ -144,10 +158,17 @@ fn a_saved_shader_is_shown_and_a_broken_one_leaves_the_last_picture() {
 
     // An include builds what includes it.
     let mark = driver.now();
-    driver.rename_into("shaders/gather/interleaved.glsl", &with(&gather, GATHERED, "vec4 hemisphere = vec4(0.1);"));
+    driver.rename_into(
+        "shaders/gather/interleaved.glsl",
+        &with(&gather, GATHERED, "vec4 hemisphere = vec4(0.1);"),
+    );
     let glowing = driver.other_picture(mark, 0, &first);
     let built = driver.event(mark, "built");
-    assert_eq!(number(&built, "rebuilt"), 1.0, "only one pass gathers: {built}");
+    assert_eq!(
+        number(&built, "rebuilt"),
+        1.0,
+        "only one pass gathers: {built}"
+    );
     assert!(number(&built, "kept") > 5.0, "{built}");
     driver.shows(&glowing);
     let mark = driver.now();
@@ -162,43 +183,70 @@ fn a_saved_shader_is_shown_and_a_broken_one_leaves_the_last_picture() {
     let cases = [
         (
             "shaders/display/display.comp",
-            with(&display, "uniform sampler2D source;", "uniform sampler2D source"),
+            with(
+                &display,
+                "uniform sampler2D source;",
+                "uniform sampler2D source",
+            ),
             None,
             "syntax",
         ),
         (
             "shaders/display/display.comp",
-            with(&display, "#include \"params.glsl\"", "#include \"params.glsl\"\n#include \"parms.glsl\""),
+            with(
+                &display,
+                "#include \"params.glsl\"",
+                "#include \"params.glsl\"\n#include \"parms.glsl\"",
+            ),
             Some(at(&display, "#include \"params.glsl\"") + 1),
             "parms.glsl",
         ),
         (
             "shaders/display/display.comp",
-            display.replace("sampler2D source", "sampler2D sourze").replace("texelFetch(source", "texelFetch(sourze"),
+            display
+                .replace("sampler2D source", "sampler2D sourze")
+                .replace("texelFetch(source", "texelFetch(sourze"),
             Some(at(&display, "sampler2D source")),
             "sourze",
         ),
         (
             "passes/parts/display.ron",
-            with(&graph, source, &source.replace("\"radiance\"", "\"radiant\"")),
+            with(
+                &graph,
+                source,
+                &source.replace("\"radiance\"", "\"radiant\""),
+            ),
             Some(at(&graph, source)),
             "radiant",
         ),
     ];
     for (file, text, line, words) in cases {
-        let right = if file.ends_with("ron") { &graph } else { &display };
+        let right = if file.ends_with("ron") {
+            &graph
+        } else {
+            &display
+        };
         let mark = driver.now();
         driver.rename_into(file, &text);
         let failed = driver.event(mark, "failed");
-        let errors: Vec<&str> = failed["errors"].as_array().unwrap().iter().map(|e| e.as_str().unwrap()).collect();
+        let errors: Vec<&str> = failed["errors"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|e| e.as_str().unwrap())
+            .collect();
         let said = errors.join("\n");
         println!("{said}\n");
         assert!(said.contains(words), "{said}");
         let name = line.map_or(format!("{file}:"), |line| format!("{file}:{line}"));
         assert!(said.contains(&name), "no {name} in: {said}");
-        driver.texts_until("the error", |texts| texts.iter().any(|t| t.contains(&name) && t.contains(words)));
+        driver.texts_until("the error", |texts| {
+            texts.iter().any(|t| t.contains(&name) && t.contains(words))
+        });
         // The picture stays; a thin frame says that it is an old one.
-        driver.screenshot_until("the last good picture", |shot| shot.inner() == good.inner() && *shot != good);
+        driver.screenshot_until("the last good picture", |shot| {
+            shot.inner() == good.inner() && *shot != good
+        });
         driver.rename_into(file, right);
         driver.event(mark, "mended");
         driver.picture(mark, 0, &first);
@@ -223,8 +271,14 @@ fn a_and_b_are_told_apart_on_the_screen_and_in_numbers() {
     for mode in ["difference", "FLIP"] {
         let mark = driver.now();
         driver.click("", mode);
-        let compared = driver.wait(mark, mode, |e| e["event"] == "compared" && e["mode"] == mode);
-        assert_eq!((number(&compared, "max"), number(&compared, "differing")), (0.0, 0.0), "{compared}");
+        let compared = driver.wait(mark, mode, |e| {
+            e["event"] == "compared" && e["mode"] == mode
+        });
+        assert_eq!(
+            (number(&compared, "max"), number(&compared, "differing")),
+            (0.0, 0.0),
+            "{compared}"
+        );
     }
 
     // One parameter of B: numbers in both modes.
@@ -233,7 +287,9 @@ fn a_and_b_are_told_apart_on_the_screen_and_in_numbers() {
     slide(&mut driver, "exposure", 0.15);
     driver.other_picture(mark, 1, &first);
     let other = driver.resting(1);
-    driver.wait(mark, "FLIP", |e| e["event"] == "compared" && number(e, "mean") > 0.01 && number(e, "max") <= 1.0);
+    driver.wait(mark, "FLIP", |e| {
+        e["event"] == "compared" && number(e, "mean") > 0.01 && number(e, "max") <= 1.0
+    });
     let mark = driver.now();
     driver.click("", "difference");
     driver.wait(mark, "difference", |e| {
@@ -276,7 +332,9 @@ fn a_and_b_are_told_apart_on_the_screen_and_in_numbers() {
     driver.click("", "raster | tessellated");
     driver.wait(mark, "B built", |e| e["event"] == "built" && e["side"] == 1);
     driver.other_picture(mark, 1, &other);
-    driver.wait(mark, "FLIP", |e| e["event"] == "compared" && number(e, "mean") > 0.0);
+    driver.wait(mark, "FLIP", |e| {
+        e["event"] == "compared" && number(e, "mean") > 0.0
+    });
     driver.click("", "A | B");
     driver.texts_until("A alone", |texts| !texts.iter().any(|t| t == "FLIP"));
     driver.shows(&other);
@@ -295,7 +353,11 @@ fn files_are_opened_by_a_dialog_cameras_and_comparisons_are_kept() {
     driver.text("corner");
     driver.click("Button", "keep camera");
     driver.find("Button", "corner");
-    assert!(driver.file("captures/cameras/cornell/corner.ron").contains("eye"));
+    assert!(
+        driver
+            .file("captures/cameras/cornell/corner.ron")
+            .contains("eye")
+    );
     let (x, y) = centre(driver.place());
     let mark = driver.now();
     driver.drag((x, y), (x + 40.0, y));
@@ -318,25 +380,36 @@ fn files_are_opened_by_a_dialog_cameras_and_comparisons_are_kept() {
     driver.picture(mark, 1, &first);
     driver.resting(1);
     driver.click("", "save picture");
-    driver.texts_until("where it was saved", |texts| texts.iter().any(|t| t.contains("opened-split")));
+    driver.texts_until("where it was saved", |texts| {
+        texts.iter().any(|t| t.contains("opened-split"))
+    });
     let saved = driver.home.path().join("captures/opened-split.png");
     let saved = image::open(saved).unwrap().to_rgba8();
     assert_eq!(fingerprint(&saved), first);
     driver.click("", "A | B");
 
     // Ctrl O asks for a file; this one is a scene, which shows itself.
-    std::fs::copy(common::root().join("configs/scenes/workshop.ron"), driver.home.path().join("bench.ron")).unwrap();
+    std::fs::copy(
+        common::root().join("configs/scenes/workshop.ron"),
+        driver.home.path().join("bench.ron"),
+    )
+    .unwrap();
     let mark = driver.now();
     driver.keys(&[CONTROL, u32::from(b'o')]);
     driver.click("", "🗋 bench.ron");
     driver.click("", "🗀  Open");
-    driver.wait(mark, "the scene", |e| e["event"] == "loaded" && e["scene"] == "workshop");
+    driver.wait(mark, "the scene", |e| {
+        e["event"] == "loaded" && e["scene"] == "workshop"
+    });
     driver.other_picture(mark, 0, &first);
     // It is loaded once: the log of events that grows beside it is none of its files.
     let mark = driver.now();
     driver.keys(&[u32::from(b't')]);
     driver.resting(0);
-    assert!(driver.events[mark..].iter().all(|e| e["event"] != "loaded"), "nothing of the scene was changed");
+    assert!(
+        driver.events[mark..].iter().all(|e| e["event"] != "loaded"),
+        "nothing of the scene was changed"
+    );
     driver.close();
 }
 
@@ -346,7 +419,9 @@ fn a_window_may_become_tiny_or_vanish_for_a_while() {
     let mut driver = small();
     let first = driver.first_picture();
     driver.shows(&first);
-    let dimmed = driver.file("shaders/display/display.comp").replace("c * exp2", "0.5 * c * exp2");
+    let dimmed = driver
+        .file("shaders/display/display.comp")
+        .replace("c * exp2", "0.5 * c * exp2");
     for (width, height) in [(1, 1), (3000, 2), (333, 222), (1, 700)] {
         driver.resize(width, height);
         std::thread::sleep(Duration::from_millis(150));
@@ -382,12 +457,20 @@ fn a_window_may_become_tiny_or_vanish_for_a_while() {
     let until = Instant::now() + PATIENCE;
     loop {
         let place = driver.place();
-        let last = driver.events.iter().rev().find(|e| e["event"] == "picture").unwrap();
+        let last = driver
+            .events
+            .iter()
+            .rev()
+            .find(|e| e["event"] == "picture")
+            .unwrap();
         let size = [0, 1].map(|i| last["size"][i].as_f64().unwrap());
         if size == [place[2] - place[0], place[3] - place[1]] {
             break;
         }
-        assert!(Instant::now() < until, "a picture of {size:?} is shown at {place:?}");
+        assert!(
+            Instant::now() < until,
+            "a picture of {size:?} is shown at {place:?}"
+        );
         print = driver.resting(0);
     }
     driver.shows(&print);
@@ -404,8 +487,15 @@ fn two_hundred_reloads_leave_nothing_behind() {
     let (mut memory, mut objects) = (0.0, 0.0);
     for i in 0..200 {
         let mark = driver.now();
-        let factor = if i % 2 == 0 { "0.5 * c * exp2" } else { "0.6 * c * exp2" };
-        driver.rename_into("shaders/display/display.comp", &display.replace("c * exp2", factor));
+        let factor = if i % 2 == 0 {
+            "0.5 * c * exp2"
+        } else {
+            "0.6 * c * exp2"
+        };
+        driver.rename_into(
+            "shaders/display/display.comp",
+            &display.replace("c * exp2", factor),
+        );
         let built = driver.event(mark, "built");
         if i == 20 {
             (memory, objects) = (driver.memory(), number(&built, "objects"));
@@ -416,7 +506,10 @@ fn two_hundred_reloads_leave_nothing_behind() {
             println!("memory {memory:.1} to {now:.1} MiB, Vulkan objects {objects} to {count}");
             assert!(now < 1.1 * memory, "{memory:.1} MiB became {now:.1}");
             // Buffers for pictures that the window has not taken yet come and go; what stayed of each reload would be 179 and more.
-            assert!(count < objects + 10.0, "{objects} Vulkan objects became {count}");
+            assert!(
+                count < objects + 10.0,
+                "{objects} Vulkan objects became {count}"
+            );
         }
     }
     // How fast a reload is has a test of its own, which runs alone.
@@ -442,22 +535,41 @@ fn a_save_is_on_the_screen_before_one_looks_up() {
             break;
         }
     }
-    let (whole, build, frame) = rounds.into_iter().min_by(|a, b| (a.0 - a.2).total_cmp(&(b.0 - b.2))).unwrap();
-    println!("from save to pixels: {whole:.0} ms (build {build:.0} ms, frame {frame:.0} ms), median of 8");
-    assert!(whole < limit + frame, "{whole:.0} ms, of which the frame {frame:.0}; at most {limit:.0} beside it");
+    let (whole, build, frame) = rounds
+        .into_iter()
+        .min_by(|a, b| (a.0 - a.2).total_cmp(&(b.0 - b.2)))
+        .unwrap();
+    println!(
+        "from save to pixels: {whole:.0} ms (build {build:.0} ms, frame {frame:.0} ms), median of 8"
+    );
+    assert!(
+        whole < limit + frame,
+        "{whole:.0} ms, of which the frame {frame:.0}; at most {limit:.0} beside it"
+    );
     driver.close();
 }
 
 /// Medians over eight saves, ms: from renaming the file to the new picture on the screen, of the build, of the frame.
-fn saves(driver: &mut WindowDriver, last: &mut String, gather: &str, first: u32) -> (f64, f64, f64) {
+fn saves(
+    driver: &mut WindowDriver,
+    last: &mut String,
+    gather: &str,
+    first: u32,
+) -> (f64, f64, f64) {
     let (mut whole, mut builds, mut frames) = (Vec::new(), Vec::new(), Vec::new());
     for i in first..first + 8 {
-        let text = with(gather, GATHERED, &format!("vec4 hemisphere = vec4({});", 0.02 * f64::from(i)));
+        let text = with(
+            gather,
+            GATHERED,
+            &format!("vec4 hemisphere = vec4({});", 0.02 * f64::from(i)),
+        );
         let mark = driver.now();
         let start = Instant::now();
         driver.rename_into("shaders/gather/interleaved.glsl", &text);
         let painted = driver.wait(mark, "new picture on the screen", |e| {
-            e["event"] == "painted" && e["pictures"][0] == 0 && e["fingerprints"][0] != last.as_str()
+            e["event"] == "painted"
+                && e["pictures"][0] == 0
+                && e["fingerprints"][0] != last.as_str()
         });
         whole.push(start.elapsed().as_secs_f64() * 1e3);
         *last = painted["fingerprints"][0].as_str().unwrap().to_string();
@@ -472,8 +584,9 @@ fn saves(driver: &mut WindowDriver, last: &mut String, gather: &str, first: u32)
 fn the_window_answers_and_closes_while_a_slow_device_renders() {
     let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
     let mut driver = WindowDriver::open(SMALL, &["--size", "1400x1050"]);
-    let slow = driver
-        .wait_at_most(Duration::from_secs(300), 0, "picture", |e| e["event"] == "picture" && e["preview"] == false);
+    let slow = driver.wait_at_most(Duration::from_secs(300), 0, "picture", |e| {
+        e["event"] == "picture" && e["preview"] == false
+    });
     println!("a frame takes {:.0} ms", number(&slow, "gpu_ms"));
     driver.click("", "keep rendering");
     let mut waits = Vec::new();
@@ -494,7 +607,10 @@ fn the_window_answers_and_closes_while_a_slow_device_renders() {
     println!("closed in {:.2} s", took.as_secs_f64());
     // It waits for the frames that the device has begun.
     let frames = Duration::from_secs_f64(4.0 * number(&slow, "gpu_ms") * 1e-3);
-    assert!(took < frames.max(Duration::from_secs(5)), "{took:?}, four frames take {frames:?}");
+    assert!(
+        took < frames.max(Duration::from_secs(5)),
+        "{took:?}, four frames take {frames:?}"
+    );
 }
 
 #[test]
@@ -506,14 +622,23 @@ fn what_nothing_changes_sleeps_at_a_click() {
     driver.click("", "Time");
     let mark = driver.now();
     driver.event(mark, "picture");
-    assert!(driver.events.iter().all(|e| e["event"] != "picture" || e["asleep"] == 0), "all is done");
+    assert!(
+        driver
+            .events
+            .iter()
+            .all(|e| e["event"] != "picture" || e["asleep"] == 0),
+        "all is done"
+    );
     driver.click("", "what changes");
-    let asleep = |e: &Value| e["event"] == "picture" && e["asleep"].as_u64().is_some_and(|n| n > 20);
+    let asleep =
+        |e: &Value| e["event"] == "picture" && e["asleep"].as_u64().is_some_and(|n| n > 20);
     let still = driver.wait(mark, "most passes sleep", asleep);
     assert_eq!(still["fingerprint"], first, "the same picture");
     let mark = driver.now();
     driver.click("", "what changes");
-    let all = driver.wait(mark, "all passes run", |e| e["event"] == "picture" && e["asleep"] == 0);
+    let all = driver.wait(mark, "all passes run", |e| {
+        e["event"] == "picture" && e["asleep"] == 0
+    });
     assert_eq!(all["fingerprint"], first);
 }
 
@@ -539,14 +664,21 @@ fn what_was_saved_is_there_after_a_restart_and_captures_replay() {
     driver.click("Button", "replace it");
     driver.event(mark, "saved");
     let saved = driver.file("configs/opened.ron");
-    assert!(saved.contains("exposure") && saved.contains("\"voxel_dim\": 32") && !saved.contains("bias"), "{saved}");
+    assert!(
+        saved.contains("exposure")
+            && saved.contains("\"voxel_dim\": 32")
+            && !saved.contains("bias"),
+        "{saved}"
+    );
 
     // A capture holds the picture that was on the screen, and makes it again.
     let mark = driver.now();
     driver.click("Button", "capture");
     let captured = driver.event(mark, "captured");
     assert_eq!(captured["ok"], true, "{captured}");
-    let picture = image::open(driver.home.path().join("captures/opened/picture.png")).unwrap().to_rgba8();
+    let picture = image::open(driver.home.path().join("captures/opened/picture.png"))
+        .unwrap()
+        .to_rgba8();
     assert_eq!(fingerprint(&picture), brighter);
     let said = succeeds(conelab(driver.home.path()).args(["replay", "captures/opened"]));
     assert!(said.starts_with("identical"), "{said}");
@@ -554,8 +686,13 @@ fn what_was_saved_is_there_after_a_restart_and_captures_replay() {
     // From the gallery too; and its settings can be loaded.
     let mark = driver.now();
     driver.click("", "replay opened");
-    let replayed = driver.wait_at_most(Duration::from_secs(120), mark, "a replay", |e| e["event"] == "replayed");
-    assert!(replayed["text"].as_str().unwrap().contains("identical"), "{replayed}");
+    let replayed = driver.wait_at_most(Duration::from_secs(120), mark, "a replay", |e| {
+        e["event"] == "replayed"
+    });
+    assert!(
+        replayed["text"].as_str().unwrap().contains("identical"),
+        "{replayed}"
+    );
     let mark = driver.now();
     driver.click("", "reset exposure");
     driver.picture(mark, 0, &first);
@@ -566,7 +703,11 @@ fn what_was_saved_is_there_after_a_restart_and_captures_replay() {
     drop(driver);
 
     let mut again = WindowDriver::open(&saved, &["--size", "160x120"]);
-    assert_eq!(again.first_picture(), brighter, "the same picture after a restart");
+    assert_eq!(
+        again.first_picture(),
+        brighter,
+        "the same picture after a restart"
+    );
     again.close();
 }
 
@@ -603,14 +744,22 @@ fn the_camera_follows_a_path_and_the_tabs_show_what_they_are_for() {
     let mark = driver.now();
     driver.click_at((x, y + 20.0));
     driver.other_picture(mark, 0, &turned);
-    driver.texts_until("the table of samples", |texts| texts.iter().any(|t| t.contains("Cone samples")));
-    driver.texts_until("rows", |texts| texts.iter().any(|t| t.contains("rows") && !t.starts_with("0 of")));
+    driver.texts_until("the table of samples", |texts| {
+        texts.iter().any(|t| t.contains("Cone samples"))
+    });
+    driver.texts_until("rows", |texts| {
+        texts
+            .iter()
+            .any(|t| t.contains("rows") && !t.starts_with("0 of"))
+    });
     let mark = driver.now();
     driver.keys(&[0xff1b]);
     driver.picture(mark, 0, &turned);
 
     driver.click("", "Time");
-    driver.texts_until("the passes", |texts| texts.iter().any(|t| t.contains("shading")));
+    driver.texts_until("the passes", |texts| {
+        texts.iter().any(|t| t.contains("shading"))
+    });
     driver.click("", "Inspect");
     driver.texts_until("statistics", |texts| texts.iter().any(|t| t == "NaN"));
     driver.close();
@@ -627,7 +776,9 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     driver.keys(&[u32::from(b't')]);
     let stages = driver.screenshot_until("times of stages", |shot| shot.rgba != plain.rgba);
     driver.keys(&[u32::from(b't')]);
-    driver.screenshot_until("times of passes", |shot| shot.rgba != plain.rgba && shot.rgba != stages.rgba);
+    driver.screenshot_until("times of passes", |shot| {
+        shot.rgba != plain.rgba && shot.rgba != stages.rgba
+    });
     driver.keys(&[u32::from(b't')]);
     driver.screenshot_until("the picture alone", |shot| shot.rgba == plain.rgba);
 
@@ -636,9 +787,13 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     driver.click("Button", "pass shadow map");
     let mark = driver.now();
     driver.click("", "on");
-    let failed = driver.wait(mark, "an error or a picture", |e| e["event"] == "built" || e["event"] == "failed");
+    let failed = driver.wait(mark, "an error or a picture", |e| {
+        e["event"] == "built" || e["event"] == "failed"
+    });
     assert_eq!(failed["event"], "built", "{failed}");
-    driver.texts_until("what is off", |texts| texts.iter().any(|t| t == "off: shadow map"));
+    driver.texts_until("what is off", |texts| {
+        texts.iter().any(|t| t == "off: shadow map")
+    });
     let dark = driver.other_picture(mark, 0, &first);
     let mark = driver.now();
     driver.click("Button", "all passes on");
@@ -655,7 +810,9 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     driver.text("tessel");
     driver.click("Button", "find pass voxelize tessellated");
     driver.texts_until("why it does not run", |texts| {
-        texts.iter().any(|t| t == "does not run: tessellates == 1 is false")
+        texts
+            .iter()
+            .any(|t| t == "does not run: tessellates == 1 is false")
     });
     driver.find("Button", "voxelizer = tessellated");
 
@@ -664,7 +821,11 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     driver.text("inj");
     driver.click("Button", "find pass inject");
     driver.click("", "on");
-    driver.texts_until("what is empty", |texts| texts.iter().any(|t| t.starts_with("sideRadiance is zeros now: ")));
+    driver.texts_until("what is empty", |texts| {
+        texts
+            .iter()
+            .any(|t| t.starts_with("sideRadiance is zeros now: "))
+    });
     let mark = driver.now();
     driver.click("Button", "all passes on");
     driver.picture(mark, 0, &first);
@@ -678,7 +839,9 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     driver.wait(mark, "B built", |e| e["event"] == "built" && e["side"] == 1);
     let rough = driver.other_picture(mark, 1, &first);
     assert_ne!(rough, dark);
-    driver.texts_until("nothing is empty", |texts| !texts.iter().any(|t| t.contains("is zeros now")));
+    driver.texts_until("nothing is empty", |texts| {
+        !texts.iter().any(|t| t.contains("is zeros now"))
+    });
     driver.click("", "A | B");
     driver.texts_until("A alone", |texts| !texts.iter().any(|t| t == "FLIP"));
     driver.click("", "picture");
@@ -689,6 +852,8 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     driver.text("shadow map");
     driver.click("Button", "find pass shadow map");
     driver.click("Button", "shadow map writes shadowMap");
-    driver.texts_until("the inspected texture", |texts| texts.iter().any(|t| t == "texture shadowMap"));
+    driver.texts_until("the inspected texture", |texts| {
+        texts.iter().any(|t| t == "texture shadowMap")
+    });
     driver.close();
 }

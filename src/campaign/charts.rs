@@ -61,14 +61,20 @@ pub fn drawn(
         draw(area)?;
         Ok(area.present()?)
     };
-    whole(&SVGBackend::with_string(&mut svg, size).into_drawing_area())
-        .map_err(|e: Failure| LabError::Make { what: format!("the chart '{title}'"), why: e.to_string() })?;
+    whole(&SVGBackend::with_string(&mut svg, size).into_drawing_area()).map_err(|e: Failure| {
+        LabError::Make {
+            what: format!("the chart '{title}'"),
+            why: e.to_string(),
+        }
+    })?;
     Ok(svg)
 }
 
 /// A name as that of a file.
 pub fn file_name(name: &str) -> String {
-    name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect()
+    name.chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
+        .collect()
 }
 
 /// Text of so many pixels.
@@ -96,12 +102,22 @@ pub struct Axis {
 impl Axis {
     /// At equal distances.
     pub fn linear(title: &str, range: (f64, f64)) -> Axis {
-        Axis { title: title.into(), log: false, range, marks: steps(range) }
+        Axis {
+            title: title.into(),
+            log: false,
+            range,
+            marks: steps(range),
+        }
     }
 
     /// At equal ratios: both ends are above 0.
     pub fn log(title: &str, range: (f64, f64)) -> Axis {
-        Axis { title: format!("{title} (log)"), log: true, range, marks: ticks(range) }
+        Axis {
+            title: format!("{title} (log)"),
+            log: true,
+            range,
+            marks: ticks(range),
+        }
     }
 
     /// With these numbers written to it.
@@ -125,7 +141,11 @@ impl Ranged for Axis {
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        if hint.weight().allow_light_points() { Vec::new() } else { self.marks.clone() }
+        if hint.weight().allow_light_points() {
+            Vec::new()
+        } else {
+            self.marks.clone()
+        }
     }
 
     fn range(&self) -> Range<f64> {
@@ -137,9 +157,16 @@ impl Ranged for Axis {
 fn steps((low, high): (f64, f64)) -> Vec<f64> {
     let rough = (high - low) / 5.0;
     let decade = 10f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].map(|s| s * decade).into_iter().find(|s| *s >= rough).unwrap_or(rough);
+    let step = [1.0, 2.0, 5.0, 10.0]
+        .map(|s| s * decade)
+        .into_iter()
+        .find(|s| *s >= rough)
+        .unwrap_or(rough);
     let first = (low / step).ceil();
-    (0..=6).map(|i| step * (first + f64::from(i))).filter(|v| *v <= high).collect()
+    (0..=6)
+        .map(|i| step * (first + f64::from(i)))
+        .filter(|v| *v <= high)
+        .collect()
 }
 
 /// Round numbers in a range at equal ratios, 3 to about 12 of them.
@@ -151,15 +178,29 @@ pub fn ticks((low, high): (f64, f64)) -> Vec<f64> {
     };
     let tenths: Vec<f64> = (10..100).map(|i| f64::from(i) / 10.0).collect();
     let halves: Vec<f64> = (2..20).map(|i| f64::from(i) / 2.0).collect();
-    let sets: [&[f64]; 5] = [&[1.0], &[1.0, 3.0], &[1.0, 2.0, 3.0, 5.0, 7.0], &halves, &tenths];
-    sets.iter().map(|s| inside(s)).find(|t| t.len() >= 4).unwrap_or_else(|| inside(&tenths))
+    let sets: [&[f64]; 5] = [
+        &[1.0],
+        &[1.0, 3.0],
+        &[1.0, 2.0, 3.0, 5.0, 7.0],
+        &halves,
+        &tenths,
+    ];
+    sets.iter()
+        .map(|s| inside(s))
+        .find(|t| t.len() >= 4)
+        .unwrap_or_else(|| inside(&tenths))
 }
 
 /// Axes with their titles and numbers.
 ///
 /// # Errors
 /// As [`drawn`].
-pub fn plane<'a, 'b>(area: &'a Area<'b>, title: &str, x: &Axis, y: &Axis) -> Result<Plane<'a, 'b>, Failure> {
+pub fn plane<'a, 'b>(
+    area: &'a Area<'b>,
+    title: &str,
+    x: &Axis,
+    y: &Axis,
+) -> Result<Plane<'a, 'b>, Failure> {
     let mut chart = ChartBuilder::on(area)
         .margin(12)
         .caption(title, (FONT, 18))
@@ -205,7 +246,11 @@ pub fn lines(title: &str, x: &Axis, y: &Axis, lines: &[Line]) -> Result<String, 
             chart.draw_series(points.iter().map(|p| Circle::new(*p, 2, color.filled())))?;
             let y = 50 + ROW * i32::try_from(i)?;
             legend.draw(&Rectangle::new([(4, y), (16, y + 4)], color.filled()))?;
-            legend.draw(&Text::new(cut(name, 30), (22, y + 2), text(13, HPos::Left, VPos::Center)))?;
+            legend.draw(&Text::new(
+                cut(name, 30),
+                (22, y + 2),
+                text(13, HPos::Left, VPos::Center),
+            ))?;
         }
         Ok(())
     })
@@ -233,35 +278,75 @@ impl Bar {
 ///
 /// # Errors
 /// As [`drawn`].
-pub fn bars(title: &str, unit: &str, shown: fn(f64) -> String, bars: &[Bar]) -> Result<String, LabError> {
-    let names: IndexSet<&str> = bars.iter().flat_map(|b| &b.parts).map(|p| p.0.as_str()).collect();
+pub fn bars(
+    title: &str,
+    unit: &str,
+    shown: fn(f64) -> String,
+    bars: &[Bar],
+) -> Result<String, LabError> {
+    let names: IndexSet<&str> = bars
+        .iter()
+        .flat_map(|b| &b.parts)
+        .map(|p| p.0.as_str())
+        .collect();
     // The legend stands in rows of four.
     let pixels = |rows: usize| ROW.saturating_mul(i32::try_from(rows).unwrap_or(i32::MAX));
     let top = 44 + pixels(names.len().div_ceil(4));
     let bottom = top.saturating_add(pixels(bars.len()));
-    let size = (WIDTH.unsigned_abs(), bottom.saturating_add(40).unsigned_abs());
+    let size = (
+        WIDTH.unsigned_abs(),
+        bottom.saturating_add(40).unsigned_abs(),
+    );
     drawn(title, size, |area| {
         area.draw(&Text::new(title.to_string(), (12, 12), (FONT, 20)))?;
         for (i, name) in names.iter().enumerate() {
-            let at = (12 + i32::try_from(i % 4)? * 260, 42 + i32::try_from(i / 4)? * ROW);
-            area.draw(&Rectangle::new([at, (at.0 + 12, at.1 + 12)], color(i).filled()))?;
-            area.draw(&Text::new((*name).to_string(), (at.0 + 18, at.1), (FONT, 15)))?;
+            let at = (
+                12 + i32::try_from(i % 4)? * 260,
+                42 + i32::try_from(i / 4)? * ROW,
+            );
+            area.draw(&Rectangle::new(
+                [at, (at.0 + 12, at.1 + 12)],
+                color(i).filled(),
+            ))?;
+            area.draw(&Text::new(
+                (*name).to_string(),
+                (at.0 + 18, at.1),
+                (FONT, 15),
+            ))?;
         }
         let most = bars.iter().map(Bar::length).fold(0.0, f64::max).max(1e-9);
         let x = |v: f64| LEFT + (v * f64::from(WIDTH - LEFT - RIGHT) / most).round() as i32;
         for value in steps((0.0, most)) {
-            area.draw(&PathElement::new([(x(value), top), (x(value), bottom)], RGBColor(220, 220, 220)))?;
+            area.draw(&PathElement::new(
+                [(x(value), top), (x(value), bottom)],
+                RGBColor(220, 220, 220),
+            ))?;
             let number = format!("{}{unit}", short(value));
-            area.draw(&Text::new(number, (x(value), bottom + 6), text(14, HPos::Center, VPos::Top)))?;
+            area.draw(&Text::new(
+                number,
+                (x(value), bottom + 6),
+                text(14, HPos::Center, VPos::Top),
+            ))?;
         }
         for (y, bar) in (0i32..).map(|i| top + i * ROW).zip(bars) {
             let label = text(14, HPos::Right, VPos::Center);
-            area.draw(&Text::new(cut(&bar.label, LABEL), (LEFT - 8, y + ROW / 2), label))?;
+            area.draw(&Text::new(
+                cut(&bar.label, LABEL),
+                (LEFT - 8, y + ROW / 2),
+                label,
+            ))?;
             let mut from = 0.0;
             for (name, length) in &bar.parts {
                 let color = color(names.get_index_of(name.as_str()).unwrap_or(0));
-                let style = if bar.hollow { color.stroke_width(1) } else { color.filled() };
-                area.draw(&Rectangle::new([(x(from), y + 3), (x(from + length), y + ROW - 3)], style))?;
+                let style = if bar.hollow {
+                    color.stroke_width(1)
+                } else {
+                    color.filled()
+                };
+                area.draw(&Rectangle::new(
+                    [(x(from), y + 3), (x(from + length), y + ROW - 3)],
+                    style,
+                ))?;
                 from += length;
             }
             let number = text(14, HPos::Left, VPos::Center);

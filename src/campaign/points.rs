@@ -15,7 +15,13 @@ pub type Labels = Vec<(String, String)>;
 
 /// Values with their names, for people; an experiment's name says enough.
 pub fn labelled<'l>(labels: impl IntoIterator<Item = (&'l String, &'l String)>) -> String {
-    let label = |(n, v): (&String, &String)| if n == "experiment" { v.clone() } else { format!("{n} {v}") };
+    let label = |(n, v): (&String, &String)| {
+        if n == "experiment" {
+            v.clone()
+        } else {
+            format!("{n} {v}")
+        }
+    };
     labels.into_iter().map(label).collect::<Vec<_>>().join(", ")
 }
 
@@ -51,7 +57,13 @@ impl Subject {
     pub fn of(experiment: &Experiment, scene: &Scene, sha256: String) -> Result<Subject, LabError> {
         let camera = placed_text(&camera_of(experiment, scene)?);
         let (size, time) = (experiment.size, format!("{:?}", experiment.time));
-        Ok(Subject { scene: scene.name.clone(), sha256, camera, size, time })
+        Ok(Subject {
+            scene: scene.name.clone(),
+            sha256,
+            camera,
+            size,
+            time,
+        })
     }
 }
 
@@ -88,7 +100,12 @@ pub struct PointBuilder<'a> {
 impl<'a> PointBuilder<'a> {
     /// Without any scene yet.
     pub fn new(open: &'a OpenScene<'a>) -> PointBuilder<'a> {
-        PointBuilder { open, scenes: HashMap::new(), lit: HashMap::new(), graphs: HashMap::new() }
+        PointBuilder {
+            open,
+            scenes: HashMap::new(),
+            lit: HashMap::new(),
+            graphs: HashMap::new(),
+        }
     }
 
     /// The point of an experiment.
@@ -104,21 +121,39 @@ impl<'a> PointBuilder<'a> {
         frames: Frames,
     ) -> Result<SweepPoint, LabError> {
         let loaded = warm.graph(home, &experiment.graph)?;
-        let graph = self.graphs.entry(experiment.graph.clone()).or_insert_with(|| graph_hash(loaded)).clone();
+        let graph = self
+            .graphs
+            .entry(experiment.graph.clone())
+            .or_insert_with(|| graph_hash(loaded))
+            .clone();
         let params = experiment.params_over(&loaded.graph.params)?;
         let (scene, sha256) = self.scene(&experiment)?;
-        let values = params.list.iter().zip(&params.values).map(|(p, v)| format!("{}={v}", p.name));
+        let values = params
+            .list
+            .iter()
+            .zip(&params.values)
+            .map(|(p, v)| format!("{}={v}", p.name));
         let subject = Subject::of(&experiment, &scene, sha256)?;
         let facts = [
             format!("conelab {}", env!("CARGO_PKG_VERSION")),
             graph,
             subject.sha256.clone(),
             subject.camera.clone(),
-            format!("{}x{} at {} s", subject.size.0, subject.size.1, subject.time),
+            format!(
+                "{}x{} at {} s",
+                subject.size.0, subject.size.1, subject.time
+            ),
             format!("{} + {} frames", frames.warmup, frames.count),
         ];
         let id = content_id(facts.into_iter().chain(values), DIGITS);
-        Ok(SweepPoint { id, experiment, scene, absent: None, subject, labels })
+        Ok(SweepPoint {
+            id,
+            experiment,
+            scene,
+            absent: None,
+            subject,
+            labels,
+        })
     }
 
     /// The scene under the experiment's light, with its hash.
@@ -146,10 +181,22 @@ impl<'a> PointBuilder<'a> {
 fn graph_hash(loaded: &Loaded) -> String {
     let mut texts: BTreeSet<(String, &str)> = BTreeSet::new();
     for (path, text) in loaded.graph.sources.texts() {
-        texts.insert((path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned()), text));
+        texts.insert((
+            path.file_name()
+                .map_or(String::new(), |n| n.to_string_lossy().into_owned()),
+            text,
+        ));
     }
-    for (name, text) in loaded.linked.iter().flat_map(|l| &l.stages).flat_map(|s| s.texts.iter()) {
+    for (name, text) in loaded
+        .linked
+        .iter()
+        .flat_map(|l| &l.stages)
+        .flat_map(|s| s.texts.iter())
+    {
         texts.insert((name.clone(), text.as_str()));
     }
-    content_id(texts.iter().flat_map(|(name, text)| [name.as_str(), text]), 64)
+    content_id(
+        texts.iter().flat_map(|(name, text)| [name.as_str(), text]),
+        64,
+    )
 }

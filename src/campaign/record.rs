@@ -80,7 +80,11 @@ impl Folder {
     ///
     /// # Errors
     /// A folder that cannot be written to.
-    pub fn write<A: Serialize, T: Serialize>(&self, record: &Record<A, T>, files: &[File]) -> Result<(), LabError> {
+    pub fn write<A: Serialize, T: Serialize>(
+        &self,
+        record: &Record<A, T>,
+        files: &[File],
+    ) -> Result<(), LabError> {
         write_files(&self.path, files)?;
         write_file(&self.record(&record.id), &json(record)?)
     }
@@ -89,11 +93,19 @@ impl Folder {
     /// what is an hour old.
     pub fn clean(&self, folders: &[&str]) {
         let old = |e: &std::fs::DirEntry| {
-            let age = e.metadata().and_then(|m| m.modified()).ok().and_then(|t| t.elapsed().ok());
-            e.file_name().to_string_lossy().starts_with(".conelab-") && age.is_some_and(|a| a.as_secs() > 3600)
+            let age = e
+                .metadata()
+                .and_then(|m| m.modified())
+                .ok()
+                .and_then(|t| t.elapsed().ok());
+            e.file_name().to_string_lossy().starts_with(".conelab-")
+                && age.is_some_and(|a| a.as_secs() > 3600)
         };
         for folder in folders {
-            let entries = std::fs::read_dir(self.path.join(folder)).into_iter().flatten().flatten();
+            let entries = std::fs::read_dir(self.path.join(folder))
+                .into_iter()
+                .flatten()
+                .flatten();
             for entry in entries.filter(old) {
                 // What cannot be deleted only takes room.
                 let _ = std::fs::remove_file(entry.path());
@@ -110,7 +122,9 @@ pub type File = (String, Vec<u8>);
 /// # Errors
 /// A folder that cannot be written to.
 pub fn write_files(folder: &Path, files: &[File]) -> Result<(), LabError> {
-    files.iter().try_for_each(|(name, bytes)| write_file(&folder.join(name), bytes))
+    files
+        .iter()
+        .try_for_each(|(name, bytes)| write_file(&folder.join(name), bytes))
 }
 
 /// Writes a file, whole and lasting.

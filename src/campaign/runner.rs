@@ -50,7 +50,10 @@ impl Counts {
     /// Those of some records.
     pub fn of<A, T>(records: &[Record<A, T>]) -> Counts {
         let done = records.iter().filter(|r| r.done().is_some()).count();
-        Counts { done, failed: records.len() - done }
+        Counts {
+            done,
+            failed: records.len() - done,
+        }
     }
 }
 
@@ -111,15 +114,27 @@ impl<'a> Runner<'a> {
         on_progress: &'a mut dyn FnMut(Progress),
     ) -> Result<Runner<'a>, LabError> {
         let points = PointBuilder::new(open_scene);
-        Ok(Runner { open, lab: open()?, warm: Warm::default(), points, on_progress })
+        Ok(Runner {
+            open,
+            lab: open()?,
+            warm: Warm::default(),
+            points,
+            on_progress,
+        })
     }
 
     /// The point of an experiment.
     ///
     /// # Errors
     /// As [`PointBuilder::point`].
-    pub fn point(&mut self, experiment: Experiment, labels: Labels, frames: Frames) -> Result<SweepPoint, LabError> {
-        self.points.point(&self.lab.home, &mut self.warm, experiment, labels, frames)
+    pub fn point(
+        &mut self,
+        experiment: Experiment,
+        labels: Labels,
+        frames: Frames,
+    ) -> Result<SweepPoint, LabError> {
+        self.points
+            .point(&self.lab.home, &mut self.warm, experiment, labels, frames)
     }
 
     /// Takes progress.
@@ -138,8 +153,15 @@ impl<'a> Runner<'a> {
         subject: &str,
         wanted: Wanted,
     ) -> Result<Option<Arc<Reference>>, LabError> {
-        let Runner { lab, warm, on_progress, .. } = self;
-        warm.reference(lab, (experiment, scene), subject, wanted, &mut |now| on_progress(Progress::Gathers(now)))
+        let Runner {
+            lab,
+            warm,
+            on_progress,
+            ..
+        } = self;
+        warm.reference(lab, (experiment, scene), subject, wanted, &mut |now| {
+            on_progress(Progress::Gathers(now))
+        })
     }
 
     /// The records of some jobs, in order: those that are `kept`, and those that `measure` measures now. An error that
@@ -154,9 +176,15 @@ impl<'a> Runner<'a> {
         kept: &mut Kept<J>,
         measure: &mut dyn FnMut(&mut Runner, &J) -> Taken<J>,
     ) -> Result<Vec<RecordOf<J>>, LabError> {
-        let finished = jobs.iter().map(|job| kept(self, job)).collect::<Result<Vec<_>, _>>()?;
+        let finished = jobs
+            .iter()
+            .map(|job| kept(self, job))
+            .collect::<Result<Vec<_>, _>>()?;
         let before = finished.iter().flatten().count();
-        self.tell(Progress::Begins { todo: jobs.len() - before, before });
+        self.tell(Progress::Begins {
+            todo: jobs.len() - before,
+            before,
+        });
         let mut records = Vec::new();
         for (job, record) in jobs.iter().zip(finished) {
             records.push(match record {
@@ -195,7 +223,9 @@ impl<'a> Runner<'a> {
         let mut result = measure(self, job);
         if self.opened_again(&result)? {
             // Often the point before it is to blame; if it is this one, it fails again.
-            self.tell(Progress::Note("the device was lost; it is opened again".into()));
+            self.tell(Progress::Note(
+                "the device was lost; it is opened again".into(),
+            ));
             result = measure(self, job);
             self.opened_again(&result)?;
         }
@@ -205,11 +235,20 @@ impl<'a> Runner<'a> {
         };
         let about = job.about(self, folder)?;
         let device = DeviceStats::of(&self.lab.gpu.info);
-        let record = Record { schema: folder.schema.into(), id: job.id().into(), about, device, outcome };
+        let record = Record {
+            schema: folder.schema.into(),
+            id: job.id().into(),
+            about,
+            device,
+            outcome,
+        };
         folder.write(&record, &files)?;
         let said = match &record.outcome {
             Outcome::Failed(error) => vec![format!("failed: {error}")],
-            Outcome::Done(measured) => J::warnings(measured).iter().map(|w| format!("warning: {w}")).collect(),
+            Outcome::Done(measured) => J::warnings(measured)
+                .iter()
+                .map(|w| format!("warning: {w}"))
+                .collect(),
         };
         self.tell(Progress::Finished(job.title(), said));
         // As the next run will read it: numbers that JSON rounds in the last place are the same in all tables.
@@ -261,6 +300,10 @@ impl Mistakes {
     /// # Errors
     /// All of them.
     pub fn none(self) -> Result<(), LabError> {
-        if self.0.is_empty() { Ok(()) } else { Err(LabError::Input(self.0)) }
+        if self.0.is_empty() {
+            Ok(())
+        } else {
+            Err(LabError::Input(self.0))
+        }
     }
 }

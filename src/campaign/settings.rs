@@ -16,15 +16,30 @@ pub struct Setting {
 
 /// Settings as they stand in a file.
 pub fn settings(list: &Entries<RawText>) -> Vec<Setting> {
-    list.0.iter().map(|(name, value)| Setting::new(name, value)).collect()
+    list.0
+        .iter()
+        .map(|(name, value)| Setting::new(name, value))
+        .collect()
 }
 
 /// Names and values as the lines of a text that stands for a file in messages, and as settings with their places in it.
-pub fn lines<'t>(list: impl IntoIterator<Item = (&'t str, &'t str)>, between: &str) -> (String, Vec<Setting>) {
+pub fn lines<'t>(
+    list: impl IntoIterator<Item = (&'t str, &'t str)>,
+    between: &str,
+) -> (String, Vec<Setting>) {
     let (mut text, mut settings) = (String::new(), Vec::new());
     for (name, value) in list {
-        let at = At { file: 0, offset: u32::try_from(text.len()).unwrap_or(0) };
-        settings.push(Setting { name: Loc { value: name.into(), at }, text: value.into() });
+        let at = At {
+            file: 0,
+            offset: u32::try_from(text.len()).unwrap_or(0),
+        };
+        settings.push(Setting {
+            name: Loc {
+                value: name.into(),
+                at,
+            },
+            text: value.into(),
+        });
         text += &format!("{name}{between}{value}\n");
     }
     (text.trim_end_matches('\n').into(), settings)
@@ -41,16 +56,27 @@ pub fn apply<'s>(
     let mut errors = Vec::new();
     for setting in settings {
         if let Err(message) = setting.apply(experiment, file, folder) {
-            errors.push(experiment.sources.error(At { file, offset: setting.name.at.offset }, message));
+            errors.push(experiment.sources.error(
+                At {
+                    file,
+                    offset: setting.name.at.offset,
+                },
+                message,
+            ));
         }
     }
     errors
 }
 
 /// Sets parameters that stand in the last of an experiment's sources, whatever their names are.
-pub fn set_params<'s>(experiment: &mut Experiment, settings: impl IntoIterator<Item = &'s Setting>) {
+pub fn set_params<'s>(
+    experiment: &mut Experiment,
+    settings: impl IntoIterator<Item = &'s Setting>,
+) {
     let file = last_source(experiment);
-    settings.into_iter().for_each(|s| s.set_param(experiment, file));
+    settings
+        .into_iter()
+        .for_each(|s| s.set_param(experiment, file));
 }
 
 fn last_source(experiment: &Experiment) -> u32 {
@@ -62,7 +88,10 @@ fn last_source(experiment: &Experiment) -> u32 {
 /// # Errors
 /// The text has no name and value.
 pub fn named<'t>(option: &str, text: &'t str, form: &str) -> Result<(&'t str, &'t str), LabError> {
-    let parts = text.split_once('=').map(|(name, value)| (name.trim(), value)).filter(|parts| !parts.0.is_empty());
+    let parts = text
+        .split_once('=')
+        .map(|(name, value)| (name.trim(), value))
+        .filter(|parts| !parts.0.is_empty());
     parts.ok_or_else(|| LabError::Request(format!("{option} {text}: expected {form}")))
 }
 
@@ -83,7 +112,9 @@ pub fn axis(option: &str, text: &str, form: &str) -> Result<Axis, LabError> {
     };
     let values: Vec<String> = list.split(between).map(|v| v.trim().to_string()).collect();
     match values.iter().any(String::is_empty) {
-        true => Err(LabError::Request(format!("{option} {text}: expected {form}"))),
+        true => Err(LabError::Request(format!(
+            "{option} {text}: expected {form}"
+        ))),
         false => Ok((name.into(), values)),
     }
 }
@@ -91,19 +122,42 @@ pub fn axis(option: &str, text: &str, form: &str) -> Result<Axis, LabError> {
 impl Setting {
     /// Mistakes are shown where the value stands.
     pub fn new(name: &Loc<String>, value: &Loc<RawText>) -> Setting {
-        Setting { name: Loc { value: name.value.clone(), at: value.at }, text: value.value.0.clone() }
+        Setting {
+            name: Loc {
+                value: name.value.clone(),
+                at: value.at,
+            },
+            text: value.value.0.clone(),
+        }
     }
 
     fn apply(&self, experiment: &mut Experiment, file: u32, folder: &Path) -> Result<(), String> {
         match Field::of(&self.name.value) {
-            Some(field) => field.set(experiment, &self.text, folder, At { file, offset: self.name.at.offset })?,
+            Some(field) => field.set(
+                experiment,
+                &self.text,
+                folder,
+                At {
+                    file,
+                    offset: self.name.at.offset,
+                },
+            )?,
             None => self.set_param(experiment, file),
         }
         Ok(())
     }
 
     fn set_param(&self, experiment: &mut Experiment, file: u32) {
-        let at = At { file, offset: self.name.at.offset };
-        experiment.params.push((Loc { value: self.name.value.clone(), at }, self.text.clone()));
+        let at = At {
+            file,
+            offset: self.name.at.offset,
+        };
+        experiment.params.push((
+            Loc {
+                value: self.name.value.clone(),
+                at,
+            },
+            self.text.clone(),
+        ));
     }
 }

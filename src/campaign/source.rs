@@ -18,25 +18,42 @@ impl Source {
     ///
     /// # Errors
     /// No such file; all mistakes that keep it from being understood.
-    pub fn read<T: DeserializeOwned>(path: &Path, help: &str) -> Result<(T, Source), Vec<Diagnostic>> {
+    pub fn read<T: DeserializeOwned>(
+        path: &Path,
+        help: &str,
+    ) -> Result<(T, Source), Vec<Diagnostic>> {
         let mut sources = Sources::default();
-        let file = sources.read(path).map_err(|e| vec![e.help(Some(help.into()))])?;
+        let file = sources
+            .read(path)
+            .map_err(|e| vec![e.help(Some(help.into()))])?;
         let mut errors = Vec::new();
         let parsed = sources.parse::<T>(file, &mut errors, &mut Vec::new());
         match parsed.filter(|_| !errors.iter().any(|e| e.severity == Severity::Error)) {
-            Some(parsed) => Ok((parsed, Source { path: path.into(), sources, errors })),
+            Some(parsed) => Ok((
+                parsed,
+                Source {
+                    path: path.into(),
+                    sources,
+                    errors,
+                },
+            )),
             None => Err(errors),
         }
     }
 
     /// The file's stem.
     pub fn name(&self) -> String {
-        self.path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned())
+        self.path
+            .file_stem()
+            .map_or(String::new(), |s| s.to_string_lossy().into_owned())
     }
 
     /// The file's text.
     pub fn text(&self) -> String {
-        self.sources.texts().next().map_or(String::new(), |t| t.1.to_string())
+        self.sources
+            .texts()
+            .next()
+            .map_or(String::new(), |t| t.1.to_string())
     }
 
     /// The file's folder: others are looked up in it.
@@ -50,7 +67,12 @@ impl Source {
     }
 
     /// A number of frames, within bounds.
-    pub fn frames(&mut self, value: &Option<Loc<usize>>, default: usize, (least, most): (usize, usize)) -> usize {
+    pub fn frames(
+        &mut self,
+        value: &Option<Loc<usize>>,
+        default: usize,
+        (least, most): (usize, usize),
+    ) -> usize {
         match value {
             Some(v) if v.value < least || v.value > most => {
                 self.wrong(v.at, format!("frames must be {least} to {most}"));
@@ -72,7 +94,8 @@ impl Source {
             Err(found) if found.iter().all(|d| d.place.line == 0) => {
                 for d in found {
                     let message = format!("{}: {}", d.place.file.display(), d.message);
-                    self.errors.push(self.sources.error(name.at, message).help(d.help));
+                    self.errors
+                        .push(self.sources.error(name.at, message).help(d.help));
                 }
             }
             Err(found) => self.errors.extend(found),

@@ -19,7 +19,10 @@ struct Column {
 impl<'r, R> Table<'r, R> {
     /// A table of some rows, without columns.
     pub fn new(rows: &'r [R]) -> Table<'r, R> {
-        Table { rows, columns: Vec::new() }
+        Table {
+            rows,
+            columns: Vec::new(),
+        }
     }
 
     /// Adds a column.
@@ -28,13 +31,21 @@ impl<'r, R> Table<'r, R> {
     }
 
     /// Adds a column whose cells have classes on pages.
-    pub fn marked(&mut self, title: impl Into<String>, cell: impl Fn(&R) -> (String, Option<&'static str>)) {
-        self.columns.push(Column { title: title.into(), cells: self.rows.iter().map(cell).collect() });
+    pub fn marked(
+        &mut self,
+        title: impl Into<String>,
+        cell: impl Fn(&R) -> (String, Option<&'static str>),
+    ) {
+        self.columns.push(Column {
+            title: title.into(),
+            cells: self.rows.iter().map(cell).collect(),
+        });
     }
 
     /// Leaves out columns in which nothing stands.
     pub fn without_empty(mut self) -> Table<'r, R> {
-        self.columns.retain(|c| c.cells.iter().any(|cell| !cell.0.is_empty()));
+        self.columns
+            .retain(|c| c.cells.iter().any(|cell| !cell.0.is_empty()));
         self
     }
 
@@ -43,11 +54,16 @@ impl<'r, R> Table<'r, R> {
     /// # Errors
     /// Writing to memory gives none.
     pub fn csv(&self) -> Result<String, LabError> {
-        let failed = |e: String| LabError::Make { what: "the table".into(), why: e };
+        let failed = |e: String| LabError::Make {
+            what: "the table".into(),
+            why: e,
+        };
         let mut out = csv::Writer::from_writer(Vec::new());
-        out.write_record(self.columns.iter().map(|c| &c.title)).map_err(|e| failed(e.to_string()))?;
+        out.write_record(self.columns.iter().map(|c| &c.title))
+            .map_err(|e| failed(e.to_string()))?;
         for i in 0..self.rows.len() {
-            out.write_record(self.columns.iter().map(|c| &c.cells[i].0)).map_err(|e| failed(e.to_string()))?;
+            out.write_record(self.columns.iter().map(|c| &c.cells[i].0))
+                .map_err(|e| failed(e.to_string()))?;
         }
         let bytes = out.into_inner().map_err(|e| failed(e.to_string()))?;
         String::from_utf8(bytes).map_err(|e| failed(e.to_string()))
@@ -71,14 +87,28 @@ impl<'r, R> Table<'r, R> {
 /// Lines of cells as Markdown, aligned for terminals too; the first is the head.
 pub fn markdown(lines: &[Vec<String>]) -> String {
     let columns = lines.first().map_or(0, Vec::len);
-    let width = |i: usize| lines.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
+    let width = |i: usize| {
+        lines
+            .iter()
+            .map(|line| line[i].chars().count())
+            .max()
+            .unwrap_or(0)
+    };
     let widths: Vec<usize> = (0..columns).map(width).collect();
     let mut out = String::new();
     for (number, line) in lines.iter().enumerate() {
-        let cells = line.iter().zip(&widths).map(|(cell, width)| format!("| {:width$} ", cell.replace('|', "\\|")));
+        let cells = line
+            .iter()
+            .zip(&widths)
+            .map(|(cell, width)| format!("| {:width$} ", cell.replace('|', "\\|")));
         out.extend(cells.chain(["|\n".into()]));
         if number == 0 {
-            out.extend(widths.iter().map(|width| format!("|{}", "-".repeat(width + 2))).chain(["|\n".into()]));
+            out.extend(
+                widths
+                    .iter()
+                    .map(|width| format!("|{}", "-".repeat(width + 2)))
+                    .chain(["|\n".into()]),
+            );
         }
     }
     out

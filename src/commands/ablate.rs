@@ -23,7 +23,12 @@ pub struct AblateArgs {
     #[arg(long, value_name = "SCENE,...", value_delimiter = ',', conflicts_with_all = ["scene", "steps"])]
     scenes: Vec<String>,
     /// Change only these parameters; all that have a plain value when absent.
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', conflicts_with = "steps")]
+    #[arg(
+        long,
+        value_name = "NAME,...",
+        value_delimiter = ',',
+        conflicts_with = "steps"
+    )]
     only: Vec<String>,
     /// Runs of the experiment as it is, whose spread is the noise of times.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(2..=100), conflicts_with = "steps")]
@@ -58,18 +63,32 @@ pub struct AblateArgs {
 
 /// Tells what each parameter of an experiment is worth, or what each step of its graph adds to its error.
 pub fn run(args: &AblateArgs) -> Result<(), LabError> {
-    if args.steps { steps::run(args) } else { parameters(args) }
+    if args.steps {
+        steps::run(args)
+    } else {
+        parameters(args)
+    }
 }
 
 fn parameters(args: &AblateArgs) -> Result<(), LabError> {
     let experiment = args.experiment.read()?;
-    let frames = Frames { warmup: args.warmup, count: args.frames.unwrap_or(50) };
+    let frames = Frames {
+        warmup: args.warmup,
+        count: args.frames.unwrap_or(50),
+    };
     adapt::check_frames(frames.count, frames.warmup, 0.0)?;
     let home = Workspace::find()?;
     let graph = home.load_of(&experiment).map_err(LabError::Input)?.graph;
     let changes = changes(&params_of(&graph, &experiment)?, &args.only)?;
-    let scenes = if args.scenes.is_empty() { vec![experiment.scene.clone()] } else { args.scenes.clone() };
-    let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/ablations").join(&experiment.name));
+    let scenes = if args.scenes.is_empty() {
+        vec![experiment.scene.clone()]
+    } else {
+        args.scenes.clone()
+    };
+    let folder = args
+        .output
+        .clone()
+        .unwrap_or_else(|| home.root.join("captures/ablations").join(&experiment.name));
 
     // Points of one number have one result: repetitions are sweeps of their own.
     let mut folders = vec![folder.clone()];
@@ -77,16 +96,27 @@ fn parameters(args: &AblateArgs) -> Result<(), LabError> {
     let mut failed = 0;
     for (number, folder) in folders.iter().enumerate() {
         let settings: Vec<(String, String)> = match number {
-            0 => changes.iter().map(|c| (c.name.clone(), c.to.to_string())).collect(),
+            0 => changes
+                .iter()
+                .map(|c| (c.name.clone(), c.to.to_string()))
+                .collect(),
             _ => Vec::new(),
         };
-        let sweep = Sweep::one_at_a_time(experiment.clone(), &scenes, &settings, frames, args.bounces);
-        let options =
-            Options { folder: folder.clone(), shard: Shard::ALL, frames, again: false, samples: Some(args.spp) };
+        let sweep =
+            Sweep::one_at_a_time(experiment.clone(), &scenes, &settings, frames, args.bounces);
+        let options = Options {
+            folder: folder.clone(),
+            shard: Shard::ALL,
+            frames,
+            again: false,
+            samples: Some(args.spp),
+        };
         failed += run_with_bar(&home, &args.device, &sweep, &options)?.failed;
     }
 
-    let parts: Vec<String> = std::iter::once("total".into()).chain(focus_of(&graph).map(|p| p.name.clone())).collect();
+    let parts: Vec<String> = std::iter::once("total".into())
+        .chain(focus_of(&graph).map(|p| p.name.clone()))
+        .collect();
     let rows = rows(&folders, &scenes, &changes, &parts)?;
     let table = markdown(&rows);
     let text = format!(
@@ -99,10 +129,18 @@ fn parameters(args: &AblateArgs) -> Result<(), LabError> {
         frames.count,
         args.runs
     );
-    write_files(&folder, &[("ablation.md".into(), text.into()), ("ablation.csv".into(), csv(&rows)?.into())])?;
+    write_files(
+        &folder,
+        &[
+            ("ablation.md".into(), text.into()),
+            ("ablation.csv".into(), csv(&rows)?.into()),
+        ],
+    )?;
     say!("{table}\nwrote {}", super::shown(&folder).display());
     match failed {
         0 => Ok(()),
-        n => Err(LabError::Request(format!("{n} points failed: their errors are in sweep.csv"))),
+        n => Err(LabError::Request(format!(
+            "{n} points failed: their errors are in sweep.csv"
+        ))),
     }
 }

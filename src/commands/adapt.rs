@@ -66,21 +66,47 @@ impl Changes {
         }
         experiment.time = self.time.unwrap_or(experiment.time);
         if !experiment.time.is_finite() {
-            return Err(LabError::Request("--time must be a finite number of seconds".into()));
+            return Err(LabError::Request(
+                "--time must be a finite number of seconds".into(),
+            ));
         }
         if self.environment.is_some() || self.sky_rotation.is_some() {
-            let over =
-                EnvironmentChange { file: self.environment.clone(), rotation: self.sky_rotation, intensity: None };
+            let over = EnvironmentChange {
+                file: self.environment.clone(),
+                rotation: self.sky_rotation,
+                intensity: None,
+            };
             over.check().map_err(LabError::Request)?;
-            let at = At { file: experiment.sources.add("--environment".as_ref(), String::new()), offset: 0 };
-            let before = experiment.environment.take().map(|e| e.value).unwrap_or_default();
-            experiment.environment = Some(Loc { value: before.overlaid(over), at });
+            let at = At {
+                file: experiment
+                    .sources
+                    .add("--environment".as_ref(), String::new()),
+                offset: 0,
+            };
+            let before = experiment
+                .environment
+                .take()
+                .map(|e| e.value)
+                .unwrap_or_default();
+            experiment.environment = Some(Loc {
+                value: before.overlaid(over),
+                at,
+            });
         }
         // Later settings win, and messages about them point at the command line.
         for setting in &self.set {
-            let file = experiment.sources.add(format!("--set {}", excerpt(setting, 80)).as_ref(), setting.clone());
+            let file = experiment.sources.add(
+                format!("--set {}", excerpt(setting, 80)).as_ref(),
+                setting.clone(),
+            );
             let (name, value) = named("--set", setting, "NAME=VALUE")?;
-            experiment.params.push((Loc { value: name.into(), at: At { file, offset: 0 } }, value.into()));
+            experiment.params.push((
+                Loc {
+                    value: name.into(),
+                    at: At { file, offset: 0 },
+                },
+                value.into(),
+            ));
         }
         Ok(experiment)
     }
@@ -107,9 +133,16 @@ pub fn open_scene(experiment: &Experiment) -> Result<Scene, LabError> {
 
 /// A picture's size, `WIDTHxHEIGHT`.
 pub fn parse_size(text: &str) -> Result<(u32, u32), LabError> {
-    let wrong = || LabError::Request(format!("--size {text}: expected WIDTHxHEIGHT, for example 1280x720"));
+    let wrong = || {
+        LabError::Request(format!(
+            "--size {text}: expected WIDTHxHEIGHT, for example 1280x720"
+        ))
+    };
     let (w, h) = text.split_once('x').ok_or_else(wrong)?;
-    let size = (w.trim().parse().map_err(|_| wrong())?, h.trim().parse().map_err(|_| wrong())?);
+    let size = (
+        w.trim().parse().map_err(|_| wrong())?,
+        h.trim().parse().map_err(|_| wrong())?,
+    );
     check_size(size).map_err(LabError::Request)?;
     Ok(size)
 }
@@ -119,7 +152,9 @@ fn parse_camera(text: &str) -> Result<CameraChoice, LabError> {
         return Ok(CameraChoice::Named(text.into()));
     }
     let placed: PlacedCamera = crate::diagnostics::options().from_str(text).map_err(|e| {
-        LabError::Request(format!("--camera: {e}; expected (eye: (x, y, z), target: (x, y, z), fov_y: degrees)"))
+        LabError::Request(format!(
+            "--camera: {e}; expected (eye: (x, y, z), target: (x, y, z), fov_y: degrees)"
+        ))
     })?;
     Ok(CameraChoice::Placed(placed))
 }
@@ -130,7 +165,9 @@ pub fn parse_resource(text: &str) -> Result<(String, u32, u32), LabError> {
     let name = parts.next().unwrap_or("").to_string();
     let mut number = |what: &str| match parts.next() {
         None => Ok(0),
-        Some(n) => n.parse().map_err(|_| LabError::Request(format!("--resource {text}: '{n}' is no {what}"))),
+        Some(n) => n
+            .parse()
+            .map_err(|_| LabError::Request(format!("--resource {text}: '{n}' is no {what}"))),
     };
     Ok((name, number("mip")?, number("layer")?))
 }
@@ -141,10 +178,14 @@ const MAX_FRAMES: usize = 1_000_000;
 /// Whether so many frames can be run, and so far apart.
 pub fn check_frames(frames: usize, warmup: usize, step: f64) -> Result<(), LabError> {
     if !step.is_finite() {
-        return Err(LabError::Request("--step must be a finite number of seconds".into()));
+        return Err(LabError::Request(
+            "--step must be a finite number of seconds".into(),
+        ));
     }
     if frames == 0 || frames.saturating_add(warmup) > MAX_FRAMES {
-        return Err(LabError::Request(format!("--frames must be 1 to {MAX_FRAMES}")));
+        return Err(LabError::Request(format!(
+            "--frames must be 1 to {MAX_FRAMES}"
+        )));
     }
     Ok(())
 }

@@ -4,7 +4,8 @@ use super::DeviceArgs;
 use super::adapt::{check_frames, parse_size};
 use super::campaign_bar::bar;
 use crate::campaign::bench::{
-    Bench, Compared, Record, Recorded, against_text, bench, charts, compare, csv, percent, record_file, slower, text,
+    Bench, Compared, Record, Recorded, against_text, bench, charts, compare, csv, percent,
+    record_file, slower, text,
 };
 use crate::campaign::points::SweepPoint;
 use crate::campaign::record::{json, write_file, write_files};
@@ -65,12 +66,17 @@ pub struct BenchArgs {
 
 /// Rounds and frames when nothing is said.
 const ROUNDS: usize = 5;
-const FRAMES: Frames = Frames { warmup: 10, count: 40 };
+const FRAMES: Frames = Frames {
+    warmup: 10,
+    count: 40,
+};
 
 /// Measures and prints tables; an error if a configuration failed, or became slower than recorded.
 pub fn run(args: &BenchArgs) -> Result<(), LabError> {
     if !(args.tolerance.is_finite() && args.tolerance >= 0.0) {
-        return Err(LabError::Request("--tolerance must be 0 or more, for example 0.1 for 10 %".into()));
+        return Err(LabError::Request(
+            "--tolerance must be 0 or more, for example 0.1 for 10 %".into(),
+        ));
     }
     match &args.against {
         Some(path) => run_against(args, path),
@@ -85,8 +91,14 @@ fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
     let (home, mut bar) = (Workspace::find()?, bar("turns "));
     let open = || Lab::open(home.clone(), args.device.options());
     let mut runner = Runner::open(&open, &super::open_scene, &mut bar)?;
-    let record = args.record.as_deref().map(|path| record_file(path, &runner.lab.gpu.info.name));
-    record.as_ref().map(|path| super::writable(path, &["json"])).transpose()?;
+    let record = args
+        .record
+        .as_deref()
+        .map(|path| record_file(path, &runner.lab.gpu.info.name));
+    record
+        .as_ref()
+        .map(|path| super::writable(path, &["json"]))
+        .transpose()?;
     let (points, _) = list(&mut runner, &sweep, frames)?;
     if let Some(why) = points.iter().find_map(|p| p.absent.clone()) {
         return Err(LabError::Request(why));
@@ -95,13 +107,21 @@ fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
     say_part!("{}", text(&result));
     write(args, &home, &sweep.name, &result)?;
     super::validated(&runner.lab)?;
-    let failed = result.configurations.iter().filter(|c| c.error.is_some()).count();
+    let failed = result
+        .configurations
+        .iter()
+        .filter(|c| c.error.is_some())
+        .count();
     if failed > 0 {
         return Err(LabError::Request(format!("{failed} configurations failed")));
     }
     if let Some(path) = record {
         write_file(&path, &json(&Record::of(&result, &points, &home)?)?)?;
-        say!("recorded {} configurations in {}", points.len(), super::shown(&path).display());
+        say!(
+            "recorded {} configurations in {}",
+            points.len(),
+            super::shown(&path).display()
+        );
     }
     Ok(())
 }
@@ -126,15 +146,28 @@ fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
     record.check_device(&device)?;
     let (rounds, frames) = counts(args, record.rounds, record.frames)?;
     let chosen = chosen(args, &home, &record)?;
-    let Again { found, skipped, mut broken } = again(&mut runner, chosen, frames);
+    let Again {
+        found,
+        skipped,
+        mut broken,
+    } = again(&mut runner, chosen, frames);
     let (recorded, points): (Vec<&Recorded>, Vec<SweepPoint>) = found.into_iter().unzip();
-    let names: IndexSet<String> = points.iter().flat_map(|p| &p.labels).map(|l| l.0.clone()).collect();
+    let names: IndexSet<String> = points
+        .iter()
+        .flat_map(|p| &p.labels)
+        .map(|l| l.0.clone())
+        .collect();
     let names = names.into_iter().collect();
     let result = bench(&mut runner, names, &points, rounds, frames)?;
     let mut compared: Vec<Compared> = Vec::new();
     for ((recorded, point), now) in recorded.iter().zip(&points).zip(&result.configurations) {
         match &now.times {
-            Some(times) => compared.push(compare(recorded, times, &point.subject.sha256, args.tolerance)),
+            Some(times) => compared.push(compare(
+                recorded,
+                times,
+                &point.subject.sha256,
+                args.tolerance,
+            )),
             None => broken.push((recorded.title(), now.error.clone().unwrap_or_default())),
         }
     }
@@ -146,17 +179,27 @@ fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
         say!("\ncannot be measured again: {title}\n{why}");
     }
     if compared.is_empty() {
-        return Err(LabError::Request(format!("nothing of '{}' could be measured again (see above)", path.display())));
+        return Err(LabError::Request(format!(
+            "nothing of '{}' could be measured again (see above)",
+            path.display()
+        )));
     }
-    let stem = path.file_stem().map_or("against".into(), |s| s.to_string_lossy());
+    let stem = path
+        .file_stem()
+        .map_or("against".into(), |s| s.to_string_lossy());
     write(args, &home, &stem, &result)?;
     super::validated(&runner.lab)?;
     let most = percent(args.tolerance);
     let mut wrong: Vec<String> = Vec::new();
     if !broken.is_empty() {
-        wrong.push(format!("{} configurations cannot be measured again: record them anew", broken.len()));
+        wrong.push(format!(
+            "{} configurations cannot be measured again: record them anew",
+            broken.len()
+        ));
     }
-    wrong.extend(slower(&compared).map(|list| format!("more than {most} slower than recorded: {list}")));
+    wrong.extend(
+        slower(&compared).map(|list| format!("more than {most} slower than recorded: {list}")),
+    );
     if !wrong.is_empty() {
         return Err(LabError::Request(wrong.join("\n")));
     }
@@ -167,9 +210,13 @@ fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
 /// Rounds and frames: those of the command line, else these.
 fn counts(args: &BenchArgs, rounds: usize, frames: Frames) -> Result<(usize, Frames), LabError> {
     let rounds = args.rounds.unwrap_or(rounds);
-    let frames = Frames { warmup: args.warmup.unwrap_or(frames.warmup), count: args.frames.unwrap_or(frames.count) };
+    let frames = Frames {
+        warmup: args.warmup.unwrap_or(frames.warmup),
+        count: args.frames.unwrap_or(frames.count),
+    };
     check_frames(frames.count, frames.warmup, 0.0)?;
-    check_frames(rounds, 0, 0.0).map_err(|_| LabError::Request("--rounds must be 1 to 1000000".into()))?;
+    check_frames(rounds, 0, 0.0)
+        .map_err(|_| LabError::Request("--rounds must be 1 to 1000000".into()))?;
     Ok((rounds, frames))
 }
 
@@ -183,31 +230,54 @@ fn sweep_of(args: &BenchArgs, frames: Frames) -> Result<Sweep, LabError> {
     }
     let mut axes = Vec::new();
     if !args.sizes.is_empty() {
-        let sizes = args.sizes.iter().map(|s| size(s).map(|(w, h)| format!("({w}, {h})")));
+        let sizes = args
+            .sizes
+            .iter()
+            .map(|s| size(s).map(|(w, h)| format!("({w}, {h})")));
         axes.push(("size".to_string(), sizes.collect::<Result<Vec<_>, _>>()?));
     }
     let settings = args.axis.iter().map(|a| ("--axis", a, "NAME=VALUE,VALUE"));
-    for (option, text, form) in settings.chain(args.set.iter().map(|s| ("--set", s, "NAME=VALUE"))) {
+    for (option, text, form) in settings.chain(args.set.iter().map(|s| ("--set", s, "NAME=VALUE")))
+    {
         axes.push(axis(option, text, form)?);
     }
     Sweep::of(experiments, &axes, frames)
 }
 
 /// The configurations of a record whose experiments the command line names; all if it names none.
-fn chosen<'r>(args: &BenchArgs, home: &Workspace, record: &'r Record) -> Result<Vec<&'r Recorded>, LabError> {
+fn chosen<'r>(
+    args: &BenchArgs,
+    home: &Workspace,
+    record: &'r Record,
+) -> Result<Vec<&'r Recorded>, LabError> {
     let same = |path: &Path, recorded: &Recorded| {
         let real = super::found(path).canonicalize();
-        real.is_ok_and(|real| recorded.file(home).canonicalize().is_ok_and(|file| file == real))
+        real.is_ok_and(|real| {
+            recorded
+                .file(home)
+                .canonicalize()
+                .is_ok_and(|file| file == real)
+        })
     };
     for path in &args.experiments {
         if !record.configurations.iter().any(|c| same(path, c)) {
-            let mut files: Vec<&str> = record.configurations.iter().map(|c| c.experiment.as_str()).collect();
+            let mut files: Vec<&str> = record
+                .configurations
+                .iter()
+                .map(|c| c.experiment.as_str())
+                .collect();
             files.dedup();
-            let message = format!("the record has no times of '{}'; it has {}", path.display(), files.join(", "));
+            let message = format!(
+                "the record has no times of '{}'; it has {}",
+                path.display(),
+                files.join(", ")
+            );
             return Err(LabError::Request(message));
         }
     }
-    let named = |c: &&Recorded| args.experiments.is_empty() || args.experiments.iter().any(|path| same(path, c));
+    let named = |c: &&Recorded| {
+        args.experiments.is_empty() || args.experiments.iter().any(|path| same(path, c))
+    };
     Ok(record.configurations.iter().filter(named).collect())
 }
 
@@ -241,11 +311,25 @@ fn again<'r>(runner: &mut Runner, chosen: Vec<&'r Recorded>, frames: Frames) -> 
 
 /// Writes numbers and charts.
 fn write(args: &BenchArgs, home: &Workspace, name: &str, result: &Bench) -> Result<(), LabError> {
-    let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/bench").join(name));
-    let mut files = vec![("bench.json".to_string(), json(result)?), ("bench.csv".into(), csv(result)?.into_bytes())];
-    files.extend(charts(result)?.into_iter().map(|(name, svg)| (format!("{name}.svg"), svg.into_bytes())));
+    let folder = args
+        .output
+        .clone()
+        .unwrap_or_else(|| home.root.join("captures/bench").join(name));
+    let mut files = vec![
+        ("bench.json".to_string(), json(result)?),
+        ("bench.csv".into(), csv(result)?.into_bytes()),
+    ];
+    files.extend(
+        charts(result)?
+            .into_iter()
+            .map(|(name, svg)| (format!("{name}.svg"), svg.into_bytes())),
+    );
     write_files(&folder, &files)?;
-    say!("wrote {} files to {}", files.len(), super::shown(&folder).display());
+    say!(
+        "wrote {} files to {}",
+        files.len(),
+        super::shown(&folder).display()
+    );
     Ok(())
 }
 

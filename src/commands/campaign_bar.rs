@@ -25,11 +25,17 @@ pub fn bar(points: &str) -> impl FnMut(Progress) {
             doing = what;
         }
         Progress::Gathers(now) => {
-            bar.set_message(format!("{doing}, reference {} of {} samples", now.samples, now.goal));
+            bar.set_message(format!(
+                "{doing}, reference {} of {} samples",
+                now.samples, now.goal
+            ));
         }
         Progress::Tried(text) => bar.suspend(|| say!("{text}")),
         Progress::Finished(what, said) => {
-            bar.suspend(|| said.iter().for_each(|text| warn!("{what}: {}", first_line(text))));
+            bar.suspend(|| {
+                said.iter()
+                    .for_each(|text| warn!("{what}: {}", first_line(text)))
+            });
             bar.inc(1);
         }
         Progress::Ends => bar.finish_and_clear(),

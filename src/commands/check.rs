@@ -52,7 +52,12 @@ pub fn kind(path: &Path) -> FileKind {
     }
     let text = read_input_text(path, MAX_BYTES).unwrap_or_default();
     let has = |field: &str| {
-        text.lines().any(|l| l.trim_start().trim_start_matches('(').trim_start().starts_with(&format!("{field}:")))
+        text.lines().any(|l| {
+            l.trim_start()
+                .trim_start_matches('(')
+                .trim_start()
+                .starts_with(&format!("{field}:"))
+        })
     };
     if has("graph") {
         FileKind::Experiment
@@ -72,7 +77,11 @@ pub fn kind(path: &Path) -> FileKind {
 fn files_of(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let mut list: Vec<PathBuf> = std::fs::read_dir(folder)
         .map(|entries| {
-            entries.flatten().map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == ending)).collect()
+            entries
+                .flatten()
+                .map(|e| e.path())
+                .filter(|p| p.extension().is_some_and(|e| e == ending))
+                .collect()
         })
         .unwrap_or_default();
     list.sort();
@@ -85,17 +94,34 @@ fn own_files(home: &Workspace) -> Vec<PathBuf> {
     let (mut included, mut whole): (Vec<PathBuf>, Vec<PathBuf>) = (Vec::new(), Vec::new());
     for path in &graphs {
         let mut sources = Sources::default();
-        let Ok(file) = sources.read(path) else { continue };
+        let Ok(file) = sources.read(path) else {
+            continue;
+        };
         if let Some(graph) = sources.parse::<GraphFile>(file, &mut Vec::new(), &mut Vec::new()) {
-            included.extend(graph.include.0.iter().map(|i| home.root.join("passes").join(&i.value)));
+            included.extend(
+                graph
+                    .include
+                    .0
+                    .iter()
+                    .map(|i| home.root.join("passes").join(&i.value)),
+            );
             whole.extend(graph.output.map(|_| path.clone()));
         }
     }
-    let mut files: Vec<PathBuf> = graphs.into_iter().filter(|g| whole.contains(g) || !included.contains(g)).collect();
+    let mut files: Vec<PathBuf> = graphs
+        .into_iter()
+        .filter(|g| whole.contains(g) || !included.contains(g))
+        .collect();
     files.extend(
-        ["configs", "configs/scenes", "configs/paths", "configs/sweeps", "configs/stability"]
-            .iter()
-            .flat_map(|f| files_of(&home.root.join(f), "ron")),
+        [
+            "configs",
+            "configs/scenes",
+            "configs/paths",
+            "configs/sweeps",
+            "configs/stability",
+        ]
+        .iter()
+        .flat_map(|f| files_of(&home.root.join(f), "ron")),
     );
     files.extend(files_of(&home.root.join("configs/times"), "json"));
     files
@@ -114,7 +140,9 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
         let name = spec_of(file);
         let checked = match kind(file) {
             FileKind::Graph => Ok(check_graph(&home, &name)),
-            FileKind::Path => crate::camera_path::CameraPath::read(file).map_err(LabError::Input).map(|_| Vec::new()),
+            FileKind::Path => crate::camera_path::CameraPath::read(file)
+                .map_err(LabError::Input)
+                .map(|_| Vec::new()),
             FileKind::Experiment => check_experiment(&home, file, &mut scenes).map(|()| Vec::new()),
             FileKind::Sweep => sweep::check(&home, file).map(|()| Vec::new()),
             FileKind::Stability => stability::check(&home, file).map(|()| Vec::new()),
@@ -134,30 +162,47 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
                 Vec::new()
             }
         };
-        let errors = findings.iter().filter(|f| f.severity == Severity::Error).count();
+        let errors = findings
+            .iter()
+            .filter(|f| f.severity == Severity::Error)
+            .count();
         wrong += errors;
         for finding in &findings {
             say!("{finding}");
         }
     }
     say!("checked {} files, {wrong} errors", files.len());
-    if wrong > 0 { Err(LabError::Request(format!("{wrong} errors"))) } else { Ok(()) }
+    if wrong > 0 {
+        Err(LabError::Request(format!("{wrong} errors")))
+    } else {
+        Ok(())
+    }
 }
 
 fn check_graph(home: &Workspace, name: &str) -> Vec<Diagnostic> {
     let mut findings = home.check(name);
-    findings.extend(home.read(name).ok().and_then(|graph| oracle::mistake(&graph)));
+    findings.extend(
+        home.read(name)
+            .ok()
+            .and_then(|graph| oracle::mistake(&graph)),
+    );
     findings
 }
 
 /// Everything that would keep an experiment from being rendered, except the device. `scenes` holds those opened so far.
-fn check_experiment(home: &Workspace, file: &Path, scenes: &mut BTreeMap<String, Arc<Scene>>) -> Result<(), LabError> {
+fn check_experiment(
+    home: &Workspace,
+    file: &Path,
+    scenes: &mut BTreeMap<String, Arc<Scene>>,
+) -> Result<(), LabError> {
     let experiment = Experiment::read(file).map_err(LabError::Input)?;
     let graph = home.load_of(&experiment).map_err(LabError::Input)?.graph;
     params_of(&graph, &experiment)?;
     let scene = match scenes.get(&experiment.scene) {
         Some(scene) => scene.clone(),
-        None => Arc::new(open(&experiment.scene).map_err(|error| LabError::of_scene(&experiment, error))?),
+        None => Arc::new(
+            open(&experiment.scene).map_err(|error| LabError::of_scene(&experiment, error))?,
+        ),
     };
     scenes.insert(experiment.scene.clone(), scene.clone());
     camera_of(&experiment, &*experiment.adapted(scene)?)?;

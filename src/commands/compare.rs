@@ -57,7 +57,11 @@ pub fn run(args: &CompareArgs) -> Result<(), LabError> {
     if let Some(json) = &args.json {
         writable(json, &["json"])?;
     }
-    let masks = args.mask.iter().map(|m| mask(m)).collect::<Result<Vec<_>, _>>()?;
+    let masks = args
+        .mask
+        .iter()
+        .map(|m| mask(m))
+        .collect::<Result<Vec<_>, _>>()?;
     let mut sources = Sources::new(&args.changes, &args.device, args.frames);
     let a = sources.side(&args.a, true)?;
     let b = args.b.as_ref().map(|b| sources.side(b, true)).transpose()?;
@@ -71,7 +75,9 @@ pub fn run(args: &CompareArgs) -> Result<(), LabError> {
         _ => Some(sources.side(&args.reference, false)?),
     };
     if let (Some(n), None) = (args.bounces, &given) {
-        let message = format!("A has no cached reference of {n} bounces; `conelab reference --bounces {n}` makes one");
+        let message = format!(
+            "A has no cached reference of {n} bounces; `conelab reference --bounces {n}` makes one"
+        );
         return Err(LabError::Request(message));
     }
     let (pictures, reference) = roles(a, b, given)?;
@@ -80,8 +86,11 @@ pub fn run(args: &CompareArgs) -> Result<(), LabError> {
         Some(folder) => write_maps(folder, i, part, files, &mut written),
         None => Ok(()),
     };
-    let request =
-        Request { parts: &args.part, masks: &masks, maps: args.maps.is_some().then_some(&mut keep as &mut _) };
+    let request = Request {
+        parts: &args.part,
+        masks: &masks,
+        maps: args.maps.is_some().then_some(&mut keep as &mut _),
+    };
     let comparison = compare(&pictures, &reference, request)?;
     say_part!("{}", table(&comparison));
     for line in &written {
@@ -111,7 +120,10 @@ fn roles(a: Side, b: Option<Side>, reference: Option<Side>) -> Result<(Vec<Side>
 /// A region painted in a file, `NAME=FILE`.
 fn mask(text: &str) -> Result<Region, LabError> {
     let (name, file) = named("--mask", text, "NAME=FILE")?;
-    Ok(Region::painted(name, &picture::read_linear(Path::new(file))?))
+    Ok(Region::painted(
+        name,
+        &picture::read_linear(Path::new(file))?,
+    ))
 }
 
 fn write_maps(

@@ -23,7 +23,12 @@ pub struct FitArgs {
     #[command(flatten)]
     experiment: ExperimentArgs,
     /// The least time with at most this error.
-    #[arg(long, value_name = "ERROR", required_unless_present = "max_ms", conflicts_with = "max_ms")]
+    #[arg(
+        long,
+        value_name = "ERROR",
+        required_unless_present = "max_ms",
+        conflicts_with = "max_ms"
+    )]
     max_error: Option<f64>,
     /// The least error in at most this GPU time, ms.
     #[arg(long, value_name = "MS")]
@@ -74,16 +79,33 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
         (None, None) => return Err(LabError::Request("give --max-error or --max-ms".into())),
     };
     if !(goal.bound() > 0.0 && goal.bound().is_finite()) || args.evaluations == 0 {
-        return Err(LabError::Request("the bound and --evaluations must be above 0".into()));
+        return Err(LabError::Request(
+            "the bound and --evaluations must be above 0".into(),
+        ));
     }
     let home = Workspace::find()?;
     let output = match &args.output {
         Some(path) if path.extension().is_some_and(|e| e == "ron") => path.clone(),
-        Some(path) => return Err(LabError::Request(format!("'{}': give it a name that ends in .ron", path.display()))),
-        None => home.root.join("captures/fit").join(format!("{}.ron", experiment.name)),
+        Some(path) => {
+            return Err(LabError::Request(format!(
+                "'{}': give it a name that ends in .ron",
+                path.display()
+            )));
+        }
+        None => home
+            .root
+            .join("captures/fit")
+            .join(format!("{}.ron", experiment.name)),
     };
-    let given = args.vary.iter().map(|text| axis("--vary", text, "NAME=VALUE,VALUE")).collect::<Result<Vec<_>, _>>()?;
-    let axes = fit::axes(&home.load_of(&experiment).map_err(LabError::Input)?.graph, &given)?;
+    let given = args
+        .vary
+        .iter()
+        .map(|text| axis("--vary", text, "NAME=VALUE,VALUE"))
+        .collect::<Result<Vec<_>, _>>()?;
+    let axes = fit::axes(
+        &home.load_of(&experiment).map_err(LabError::Input)?.graph,
+        &given,
+    )?;
     let folder = output.with_extension("");
     let request = Request {
         experiment: &experiment,
@@ -93,28 +115,44 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
         metric: args.metric,
         evaluations: args.evaluations,
         least_gain: LEAST_GAIN,
-        frames: Frames { warmup: args.warmup, count: args.frames },
+        frames: Frames {
+            warmup: args.warmup,
+            count: args.frames,
+        },
         bounces: args.bounces,
         samples: args.spp,
         folder: folder.clone(),
     };
     let mut bar = bar("settings ");
     let open = || Lab::open(home.clone(), args.device.options());
-    let Fitted { found, best, defaults } =
-        fit::run(&open, &super::open_scene, &request, &mut |progress| match progress {
+    let Fitted {
+        found,
+        best,
+        defaults,
+    } = fit::run(
+        &open,
+        &super::open_scene,
+        &request,
+        &mut |progress| match progress {
             // What is wrong with a setting stands in its line.
             Progress::Finished(what, _) => bar(Progress::Finished(what, Vec::new())),
             other => bar(other),
-        })?;
+        },
+    )?;
     let summary = summary(&found, args, goal, &axes);
     crate::experiment::write(&best, &defaults, &output, true)?;
     comment(&output, &summary, &best, &defaults)?;
     say!("{}", summary.join("\n"));
     say!("wrote {}", super::shown(&output).display());
-    say!("what was tried: conelab report {}", super::shown(&folder).display());
+    say!(
+        "what was tried: conelab report {}",
+        super::shown(&folder).display()
+    );
     match found.trial.bounded <= goal.bound() {
         true => Ok(()),
-        false => Err(LabError::Request("no setting that was tried is within the bound".into())),
+        false => Err(LabError::Request(
+            "no setting that was tried is within the bound".into(),
+        )),
     }
 }
 
@@ -138,21 +176,39 @@ fn summary(found: &Found, args: &FitArgs, goal: Goal, axes: &[Axis]) -> Vec<Stri
     };
     let grid = axes.iter().map(|a| a.1.len() as u64).product::<u64>();
     vec![
-        format!("{ms:.3} ms, {metric} {error:.4e} of the {} (wanted: {bound})", args.part),
-        format!("{} of {grid} settings tried; {}", found.tried.len(), why(found.stop)),
+        format!(
+            "{ms:.3} ms, {metric} {error:.4e} of the {} (wanted: {bound})",
+            args.part
+        ),
+        format!(
+            "{} of {grid} settings tried; {}",
+            found.tried.len(),
+            why(found.stop)
+        ),
     ]
 }
 
 /// Puts lines of comment before an experiment that was just written.
-fn comment(path: &Path, lines: &[String], best: &Experiment, defaults: &Params) -> Result<(), LabError> {
+fn comment(
+    path: &Path,
+    lines: &[String],
+    best: &Experiment,
+    defaults: &Params,
+) -> Result<(), LabError> {
     let text = std::fs::read_to_string(path).map_err(|e| FileError::write(path, e))?;
     let mut out = String::new();
     for line in lines {
         let _ = writeln!(out, "// {line}");
     }
     // Comments of an earlier search about this file say nothing about this one.
-    out.extend(text.lines().skip_while(|l| l.starts_with("//")).map(|l| format!("{l}\n")));
-    let same = Experiment::from_text(path, &out).map_err(LabError::Input)?.params_over(defaults)?;
+    out.extend(
+        text.lines()
+            .skip_while(|l| l.starts_with("//"))
+            .map(|l| format!("{l}\n")),
+    );
+    let same = Experiment::from_text(path, &out)
+        .map_err(LabError::Input)?
+        .params_over(defaults)?;
     if same.values != best.params_over(defaults)?.values {
         return Err(FileError::write(path, "it would not read back as it is").into());
     }

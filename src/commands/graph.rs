@@ -52,14 +52,18 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     }
     let file = super::found(&path_of(&args.file));
     let experiment = match crate::commands::check::kind(&file) {
-        crate::commands::check::FileKind::Experiment => Some(Experiment::read(&file).map_err(LabError::Input)?),
+        crate::commands::check::FileKind::Experiment => {
+            Some(Experiment::read(&file).map_err(LabError::Input)?)
+        }
         _ => None,
     };
     let loaded = match &experiment {
         Some(experiment) => home.load_of(experiment),
         None => home.load(&args.file),
     };
-    let Loaded { graph, warnings, .. } = loaded.map_err(LabError::Input)?;
+    let Loaded {
+        graph, warnings, ..
+    } = loaded.map_err(LabError::Input)?;
     for warning in warnings {
         warn!("{warning}");
     }
@@ -89,11 +93,22 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     let set = Evaluated::new(&graph, &params, environment(&scene, size, &device));
     if args.params {
         say_part!("{}", report::values(&set));
-        return if set.errors.is_empty() { Ok(()) } else { Err(LabError::Input(set.errors)) };
+        return if set.errors.is_empty() {
+            Ok(())
+        } else {
+            Err(LabError::Input(set.errors))
+        };
     }
-    let mut wanted: Vec<String> = graph.output.iter().chain(&graph.hdr).chain(&args.want).cloned().collect();
+    let mut wanted: Vec<String> = graph
+        .output
+        .iter()
+        .chain(&graph.hdr)
+        .chain(&args.want)
+        .cloned()
+        .collect();
     if let Some(name) = wanted.iter().find(|w| graph.resource(w).is_none()) {
-        let hint = nearest(name, graph.resource_names()).map_or(String::new(), |h| format!(" ({h})"));
+        let hint =
+            nearest(name, graph.resource_names()).map_or(String::new(), |h| format!(" ({h})"));
         return Err(LabError::Request(format!("no resource '{name}'{hint}")));
     }
     wanted.extend(graph.checked_with(&wanted));

@@ -25,7 +25,10 @@ pub fn put(text: Arguments) {
 
 fn keep(result: Result<(), Error>) {
     if let Err(error) = result {
-        FAILED.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        FAILED
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .get_or_insert(error);
     }
 }
 
@@ -36,9 +39,9 @@ fn keep(result: Result<(), Error>) {
 pub fn written() -> Result<(), LabError> {
     keep(std::io::stdout().flush());
     match FAILED.lock().unwrap_or_else(PoisonError::into_inner).take() {
-        Some(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(LabError::Request(format!("cannot write to standard output: {error}")))
-        }
+        Some(error) if error.kind() != ErrorKind::BrokenPipe => Err(LabError::Request(format!(
+            "cannot write to standard output: {error}"
+        ))),
         _ => Ok(()),
     }
 }

@@ -51,17 +51,38 @@ pub fn run(args: &ReferenceArgs) -> Result<(), LabError> {
     let scene = Arc::new(adapt::open_scene(&experiment)?);
     let lab = Lab::open(home, args.device.options())?;
     let reference = with_bar(&lab, &experiment, &scene, args.bounces, goal)?;
-    say!("{} samples a pixel, {} bounces, {}x{}", reference.samples, args.bounces, reference.size.0, reference.size.1);
-    say!("{:<12}{:>14}{:>22}{:>20}", "part", "mean", "relMSE of the halves", "structure of noise");
+    say!(
+        "{} samples a pixel, {} bounces, {}x{}",
+        reference.samples,
+        args.bounces,
+        reference.size.0,
+        reference.size.1
+    );
+    say!(
+        "{:<12}{:>14}{:>22}{:>20}",
+        "part",
+        "mean",
+        "relMSE of the halves",
+        "structure of noise"
+    );
     for (name, part) in &reference.parts {
         let noise = part.noise;
-        say!("{name:<12}{:>14.6}{:>22.3e}{:>20.3e}", part.mean.mean(), noise.relmse, noise.structure);
+        say!(
+            "{name:<12}{:>14.6}{:>22.3e}{:>20.3e}",
+            part.mean.mean(),
+            noise.relmse,
+            noise.structure
+        );
     }
     say!("kept in {}", super::shown(&reference.folder).display());
     if let Some(path) = &args.output {
         let part = reference.parts.get(&args.part).ok_or_else(|| {
             let all: Vec<&str> = reference.parts.keys().map(String::as_str).collect();
-            LabError::Request(format!("no part '{}'; there are {}", args.part, all.join(", ")))
+            LabError::Request(format!(
+                "no part '{}'; there are {}",
+                args.part,
+                all.join(", ")
+            ))
         })?;
         crate::results::picture::write_linear(path, &part.mean)?;
         say!("wrote {}", path.display());
@@ -77,23 +98,31 @@ pub fn with_bar(
     bounces: u32,
     goal: Goal,
 ) -> Result<Reference, LabError> {
-    let style = indicatif::ProgressStyle::with_template("{bar:30} {pos}/{len} samples, {msg}, {eta} left");
-    let bar =
-        indicatif::ProgressBar::new(1).with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()));
+    let style =
+        indicatif::ProgressStyle::with_template("{bar:30} {pos}/{len} samples, {msg}, {eta} left");
+    let bar = indicatif::ProgressBar::new(1)
+        .with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()));
     let mut first = true;
-    let result = gather(lab, experiment, scene, bounces, goal, &mut |now: Gathered| {
-        // The bar is drawn whenever its position changes: all else must be said before.
-        bar.set_length(now.goal);
-        bar.set_message(format!("relMSE {:.2e}", now.noise));
-        if first {
-            // What an earlier run gathered says nothing about this one's speed.
+    let result = gather(
+        lab,
+        experiment,
+        scene,
+        bounces,
+        goal,
+        &mut |now: Gathered| {
+            // The bar is drawn whenever its position changes: all else must be said before.
+            bar.set_length(now.goal);
+            bar.set_message(format!("relMSE {:.2e}", now.noise));
+            if first {
+                // What an earlier run gathered says nothing about this one's speed.
+                bar.set_position(now.samples);
+                bar.reset_eta();
+                first = false;
+            }
             bar.set_position(now.samples);
-            bar.reset_eta();
-            first = false;
-        }
-        bar.set_position(now.samples);
-        ControlFlow::Continue(())
-    });
+            ControlFlow::Continue(())
+        },
+    );
     bar.finish_and_clear();
     result
 }

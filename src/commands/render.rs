@@ -70,8 +70,12 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     if let Some(folder) = &args.sequence {
         without_frames(folder)?;
     }
-    let path =
-        args.path.as_deref().map(|path| CameraPath::read(&super::found(path))).transpose().map_err(LabError::Input)?;
+    let path = args
+        .path
+        .as_deref()
+        .map(|path| CameraPath::read(&super::found(path)))
+        .transpose()
+        .map_err(LabError::Input)?;
     let home = Workspace::find()?;
     let mut scene = adapt::open_scene(&experiment)?;
     if let Some(seed) = args.shuffle {
@@ -86,9 +90,21 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
             Some(r) => Err(crate::lab::no_texture(graph, &r.0)),
             None => Ok((result_name(graph, exr)?, 0, 0)),
         };
-        shown = args.output.as_ref().map(|path| Ok::<_, LabError>((path, named(exr)?))).transpose()?;
-        frames_of = args.sequence.as_ref().map(|path| Ok::<_, LabError>((path, named(false)?))).transpose()?;
-        Ok(shown.iter().chain(&frames_of).map(|s| s.1.0.clone()).collect())
+        shown = args
+            .output
+            .as_ref()
+            .map(|path| Ok::<_, LabError>((path, named(exr)?)))
+            .transpose()?;
+        frames_of = args
+            .sequence
+            .as_ref()
+            .map(|path| Ok::<_, LabError>((path, named(false)?)))
+            .transpose()?;
+        Ok(shown
+            .iter()
+            .chain(&frames_of)
+            .map(|s| s.1.0.clone())
+            .collect())
     })?;
     for warning in warnings {
         warn!("{warning}");
@@ -100,8 +116,13 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     }
     session.set_redo(args.redo);
     let mut times = Vec::new();
-    let alone = args.frames.is_none() && args.sequence.is_none() && args.path.is_none() && args.step == 0.0;
-    let warmup = args.warmup.unwrap_or(if alone { session.converging_frames() - 1 } else { 0 });
+    let alone =
+        args.frames.is_none() && args.sequence.is_none() && args.path.is_none() && args.step == 0.0;
+    let warmup = args.warmup.unwrap_or(if alone {
+        session.converging_frames() - 1
+    } else {
+        0
+    });
     let bar = indicatif::ProgressBar::new((warmup + frames) as u64);
     for number in 0..warmup + frames {
         if let Some(path) = &path {
@@ -124,25 +145,47 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     let times: Vec<FrameTimes> = times.split_off(times.len().saturating_sub(frames));
     let mut failed = session.failed_checks()?;
     if let Some((_, shown)) = &shown {
-        failed.extend(not_finite(&session.texels(&shown.0, shown.1, shown.2)?, &shown.0));
+        failed.extend(not_finite(
+            &session.texels(&shown.0, shown.1, shown.2)?,
+            &shown.0,
+        ));
     }
     for message in &failed {
         warn!("warning: {message}");
     }
     if let Some((path, shown)) = &shown {
-        let timers = args.timers.filter(|_| !exr).map(|rows| timers(rows, &lab, &session, &times));
+        let timers = args
+            .timers
+            .filter(|_| !exr)
+            .map(|rows| timers(rows, &lab, &session, &times));
         write_texture(&lab, &mut session, path, shown, timers)?;
     }
-    let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, warmup, failed);
+    let stats = stats::collect(
+        &lab.gpu.info,
+        &experiment.name,
+        &session,
+        &times,
+        warmup,
+        failed,
+    );
     say_part!("{}", stats::table(&stats));
     if let Some((folder, _)) = &frames_of {
         say!("wrote {} frames to {}", frames, folder.display());
     }
     if let Some((path, (name, ..))) = &shown {
-        let what = if exr && resource.is_none() { format!(" ('{name}', linear)") } else { String::new() };
+        let what = if exr && resource.is_none() {
+            format!(" ('{name}', linear)")
+        } else {
+            String::new()
+        };
         say!("wrote {}{what}", path.display());
-        if let Some(part) = part_asked_for(&session).filter(|p| exr && resource.is_none() && p.texture != *name) {
-            warn!("warning: '{name}' is the whole light; --resource {} writes '{}' alone", part.texture, part.name);
+        if let Some(part) =
+            part_asked_for(&session).filter(|p| exr && resource.is_none() && p.texture != *name)
+        {
+            warn!(
+                "warning: '{name}' is the whole light; --resource {} writes '{}' alone",
+                part.texture, part.name
+            );
         }
     }
     if let Some(path) = &args.json {
@@ -154,14 +197,29 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
 
 /// Told where texels are no numbers.
 fn not_finite(texels: &Texels, name: &str) -> Option<String> {
-    let count = texels.floats().iter().filter(|t| t.iter().any(|v| !v.is_finite())).count();
+    let count = texels
+        .floats()
+        .iter()
+        .filter(|t| t.iter().any(|v| !v.is_finite()))
+        .count();
     (count > 0).then(|| format!("'{name}' has {count} texels that are NaN or infinite"))
 }
 
 /// The part of the light that a parameter is set to show, and its texture.
 fn part_asked_for(session: &Session) -> Option<LightPart> {
-    let set = |part: &str| session.params.values.iter().any(|v| matches!(v, Value::Choice(option) if option == part));
-    session.graph.parts.iter().find(|part| set(&part.name)).cloned()
+    let set = |part: &str| {
+        session
+            .params
+            .values
+            .iter()
+            .any(|v| matches!(v, Value::Choice(option) if option == part))
+    };
+    session
+        .graph
+        .parts
+        .iter()
+        .find(|part| set(&part.name))
+        .cloned()
 }
 
 fn write_texture(
@@ -180,20 +238,40 @@ fn write_texture(
 
 /// The medians of frames' times, to be drawn onto a picture.
 fn timers(rows: Rows, lab: &Lab, session: &Session, times: &[FrameTimes]) -> Timers {
-    let passes = times.first().map_or(&[][..], |t| &t.passes).iter().enumerate().map(|(i, (number, _))| {
-        let of = times.iter().filter_map(|t| t.passes.get(i)).map(|p| p.1);
-        (*number, stats::spread(of.collect()).median)
-    });
+    let passes = times
+        .first()
+        .map_or(&[][..], |t| &t.passes)
+        .iter()
+        .enumerate()
+        .map(|(i, (number, _))| {
+            let of = times.iter().filter_map(|t| t.passes.get(i)).map(|p| p.1);
+            (*number, stats::spread(of.collect()).median)
+        });
     let size = session.size().into();
-    Timers::new(rows, &session.graph, &session.params, &lab.gpu.info.name, size, &passes.collect::<Vec<_>>())
+    Timers::new(
+        rows,
+        &session.graph,
+        &session.params,
+        &lab.gpu.info.name,
+        size,
+        &passes.collect::<Vec<_>>(),
+    )
 }
 
 /// Makes the folder of a sequence, unless it has frames: two sequences in one would look like one.
 fn without_frames(folder: &Path) -> Result<(), LabError> {
-    let fail = |why: String| LabError::Request(format!("cannot write frames to '{}': {why}", folder.display()));
+    let fail = |why: String| {
+        LabError::Request(format!(
+            "cannot write frames to '{}': {why}",
+            folder.display()
+        ))
+    };
     std::fs::create_dir_all(folder).map_err(|e| fail(e.to_string()))?;
     let is_frame = |name: &str| name.starts_with("frame-") && name.to_lowercase().ends_with(".png");
-    for entry in std::fs::read_dir(folder).map_err(|e| fail(e.to_string()))?.flatten() {
+    for entry in std::fs::read_dir(folder)
+        .map_err(|e| fail(e.to_string()))?
+        .flatten()
+    {
         let name = entry.file_name().to_string_lossy().into_owned();
         if is_frame(&name) {
             return Err(fail(format!("it has '{name}'; choose an empty folder")));
@@ -203,8 +281,15 @@ fn without_frames(folder: &Path) -> Result<(), LabError> {
 }
 
 fn result_name(graph: &Graph, exr: bool) -> Result<String, LabError> {
-    let (name, field) = if exr { (&graph.hdr, "hdr") } else { (&graph.output, "output") };
+    let (name, field) = if exr {
+        (&graph.hdr, "hdr")
+    } else {
+        (&graph.output, "output")
+    };
     name.clone().ok_or_else(|| {
-        LabError::Request(format!("graph '{}' has no `{field}`; name a texture with --resource", graph.name))
+        LabError::Request(format!(
+            "graph '{}' has no `{field}`; name a texture with --resource",
+            graph.name
+        ))
     })
 }

@@ -36,23 +36,41 @@ pub fn run(args: &ReplayArgs) -> Result<(), LabError> {
         )));
     }
     if frames > MANY_FRAMES {
-        eprintln!("rendering {frames} frames of {}x{} pixels", manifest.size[0], manifest.size[1]);
+        eprintln!(
+            "rendering {frames} frames of {}x{} pixels",
+            manifest.size[0], manifest.size[1]
+        );
     }
     // Told first: what has changed in the folder may be why it cannot be rendered.
     for change in changes(&args.capture, &manifest) {
         say!("{change}");
     }
     // Graph and shaders are the capture's own; the project has only the caches.
-    let home = Workspace { root: args.capture.clone(), cache: Workspace::cache() };
+    let home = Workspace {
+        root: args.capture.clone(),
+        cache: Workspace::cache(),
+    };
     let lab = Lab::open(home, args.device.options())?;
-    let result = replay(&lab, &args.capture, &manifest, super::open_scene, args.output.as_deref())?;
+    let result = replay(
+        &lab,
+        &args.capture,
+        &manifest,
+        super::open_scene,
+        args.output.as_deref(),
+    )?;
     for change in &result.changes {
         say!("{change}");
     }
     for d in &result.differences {
         match &d.broken {
             Some(why) => say!("{why}"),
-            None => say!("{}: {} of {} texels differ, by at most {}", d.file, d.texels, d.of, d.largest),
+            None => say!(
+                "{}: {} of {} texels differ, by at most {}",
+                d.file,
+                d.texels,
+                d.of,
+                d.largest
+            ),
         }
     }
     if let Some(output) = &args.output {
@@ -61,9 +79,16 @@ pub fn run(args: &ReplayArgs) -> Result<(), LabError> {
     super::validated(&lab)?;
     match result.differences.len() {
         0 => {
-            say!("identical: {} images, {} texels", result.images, result.texels);
+            say!(
+                "identical: {} images, {} texels",
+                result.images,
+                result.texels
+            );
             Ok(())
         }
-        n => Err(LabError::Request(format!("{n} of {} images differ", result.images))),
+        n => Err(LabError::Request(format!(
+            "{n} of {} images differ",
+            result.images
+        ))),
     }
 }

@@ -34,6 +34,9 @@ pub fn run(args: &ReportArgs) -> Result<(), LabError> {
         say!("wrote {}", super::shown(file).display());
     }
     let measured = collected.points.iter().filter(|p| p.1.is_some()).count();
-    say!("{measured} of {} points are finished", collected.points.len());
+    say!(
+        "{measured} of {} points are finished",
+        collected.points.len()
+    );
     Ok(())
 }

@@ -24,7 +24,8 @@ pub fn run(args: &SaveArgs) -> Result<(), LabError> {
     let name = checked_name(&args.name)?;
     let experiment = args.experiment.read()?;
     let home = Workspace::find()?;
-    let graph = load(&home.graph_path(&experiment.graph), &home.folders()).map_err(LabError::Input)?;
+    let graph =
+        load(&home.graph_path(&experiment.graph), &home.folders()).map_err(LabError::Input)?;
     let path = home.root.join("configs").join(format!("{name}.ron"));
     write(&experiment, &graph.params, &path, args.overwrite)?;
     say!("wrote {}", super::shown(&path).display());

@@ -73,7 +73,12 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
     let format = image::ImageFormat::from_path(&args.output)
         .ok()
         .filter(|f| matches!(f, image::ImageFormat::Png | image::ImageFormat::Jpeg))
-        .ok_or_else(|| LabError::Request(format!("'{}': give it the ending .png or .jpg", args.output.display())))?;
+        .ok_or_else(|| {
+            LabError::Request(format!(
+                "'{}': give it the ending .png or .jpg",
+                args.output.display()
+            ))
+        })?;
     if !(0.25..=8.0).contains(&args.scale) {
         return Err(LabError::Request("--scale must be 0.25 to 8".into()));
     }
@@ -85,7 +90,9 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         measure: args.measure,
         pace: (args.pace > 0).then(|| Pace {
             pictures: args.pace,
-            every: args.every.map(|ms| Duration::from_secs_f64(ms.clamp(0.1, 1e4) / 1e3)),
+            every: args
+                .every
+                .map(|ms| Duration::from_secs_f64(ms.clamp(0.1, 1e4) / 1e3)),
         }),
         edit: args.edit.clone().map(|file| Edit {
             file,
@@ -95,16 +102,38 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         }),
         patience: Duration::from_secs(args.patience),
     };
-    let experiment = args.experiment.as_deref().map_or_else(|| home.root.join("configs/cones.ron"), super::found);
+    let experiment = args
+        .experiment
+        .as_deref()
+        .map_or_else(|| home.root.join("configs/cones.ron"), super::found);
     let size = args.size.as_deref().map(parse_size).transpose()?;
     let (scene, events) = (args.scene.clone(), args.events.clone());
-    let options = Options { home, gpu: gpu.clone(), experiment, scene, size, redo: Redo::All, events };
+    let options = Options {
+        home,
+        gpu: gpu.clone(),
+        experiment,
+        scene,
+        size,
+        redo: Redo::All,
+        events,
+    };
     let shot = take(options, &gpu, script)?;
-    let rgb: Vec<u8> = shot.bytes.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+    let rgb: Vec<u8> = shot
+        .bytes
+        .chunks_exact(4)
+        .flat_map(|p| [p[0], p[1], p[2]])
+        .collect();
     let mut file = Cursor::new(Vec::new());
     let [width, height] = shot.size;
-    image::write_buffer_with_format(&mut file, &rgb, width, height, image::ColorType::Rgb8, format)
-        .map_err(LabError::making("the picture"))?;
+    image::write_buffer_with_format(
+        &mut file,
+        &rgb,
+        width,
+        height,
+        image::ColorType::Rgb8,
+        format,
+    )
+    .map_err(LabError::making("the picture"))?;
     crate::files::write_whole(&args.output, file.get_ref())?;
     if args.measure > 0 || shot.pace.is_some() || shot.edit_ms.is_some() {
         let row = |name: &str, s: &crate::results::stats::Spread| {
@@ -123,7 +152,11 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
             row("interface, CPU", &pace.cpu_ms);
             say!("{} pictures, {} painted", pace.pictures, pace.painted);
             if let Some((before, after)) = pace.memory {
-                say!("{:.1} MiB after a tenth of them, {:.1} MiB after all", mib(before), mib(after));
+                say!(
+                    "{:.1} MiB after a tenth of them, {:.1} MiB after all",
+                    mib(before),
+                    mib(after)
+                );
             }
         }
         if let Some(edit) = &shot.edit_ms {

@@ -4,7 +4,9 @@ use super::DeviceArgs;
 use super::adapt::parse_size;
 use super::campaign_bar::bar;
 use crate::campaign::record::write_file;
-use crate::campaign::stability::{Options, Suite, failure_table, failures, run as run_suite, sheet};
+use crate::campaign::stability::{
+    Options, Suite, failure_table, failures, run as run_suite, sheet,
+};
 use crate::campaign::table::short;
 use crate::lab::{Lab, LabError, Workspace};
 use crate::metrics::RELMSE;
@@ -64,7 +66,10 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
         super::writable(sheet, &["jpg", "jpeg"])?;
     }
     let home = Workspace::find()?;
-    let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/stability").join(&suite.name));
+    let folder = args
+        .output
+        .clone()
+        .unwrap_or_else(|| home.root.join("captures/stability").join(&suite.name));
     let options = Options {
         folder,
         size,
@@ -77,9 +82,15 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
     let reopen = || Lab::open(home.clone(), args.device.options());
     let (counts, report) = run_suite(&reopen, &super::open_scene, &suite, &options, &mut bar(""))?;
     for r in &report.results {
-        let Some(total) = r.part("total") else { continue };
+        let Some(total) = r.part("total") else {
+            continue;
+        };
         let number = |v: Option<f64>| v.map_or("-".into(), short);
-        let noise = if total.told_apart == Some(false) { " (within noise)" } else { "" };
+        let noise = if total.told_apart == Some(false) {
+            " (within noise)"
+        } else {
+            ""
+        };
         say!(
             "{:32} {:24} E_t {}{noise}, jump {}/255, flicker {}, relMSE {}",
             r.about.title(),
@@ -90,7 +101,10 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
             number(total.scores.as_ref().map(|s| s.get(RELMSE)))
         );
     }
-    say!("wrote {}", super::shown(&options.folder.join("index.html")).display());
+    say!(
+        "wrote {}",
+        super::shown(&options.folder.join("index.html")).display()
+    );
     if let Some(path) = &args.sheet {
         let list = failures(&report);
         let bytes = sheet(&list, &options.folder)?;
@@ -100,6 +114,8 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
     say!("{} done, {} failed", counts.done, counts.failed);
     match counts.failed {
         0 => Ok(()),
-        n => Err(LabError::Request(format!("{n} failed: their errors are in stability.csv"))),
+        n => Err(LabError::Request(format!(
+            "{n} failed: their errors are in stability.csv"
+        ))),
     }
 }

@@ -41,19 +41,39 @@ pub struct SweepArgs {
 pub fn run(args: &SweepArgs) -> Result<(), LabError> {
     let sweep = Sweep::read(&super::found(&args.sweep)).map_err(LabError::Input)?;
     let shard = args.shard.as_deref().map_or(Ok(Shard::ALL), parse_shard)?;
-    let frames =
-        Frames { warmup: args.warmup.unwrap_or(sweep.frames.warmup), count: args.frames.unwrap_or(sweep.frames.count) };
+    let frames = Frames {
+        warmup: args.warmup.unwrap_or(sweep.frames.warmup),
+        count: args.frames.unwrap_or(sweep.frames.count),
+    };
     super::adapt::check_frames(frames.count, frames.warmup, 0.0)?;
     let home = Workspace::find()?;
-    let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/sweeps").join(&sweep.name));
-    let options = Options { folder, shard, frames, again: args.again, samples: args.reference };
+    let folder = args
+        .output
+        .clone()
+        .unwrap_or_else(|| home.root.join("captures/sweeps").join(&sweep.name));
+    let options = Options {
+        folder,
+        shard,
+        frames,
+        again: args.again,
+        samples: args.reference,
+    };
     let Counts { done, failed } = run_with_bar(&home, &args.device, &sweep, &options)?;
-    let of = if shard.of > 1 { format!("shard {}/{}: ", shard.number, shard.of) } else { String::new() };
+    let of = if shard.of > 1 {
+        format!("shard {}/{}: ", shard.number, shard.of)
+    } else {
+        String::new()
+    };
     say!("wrote {}", super::shown(&options.folder).display());
-    say!("{of}{} points: {done} done, {failed} failed, 0 left", done + failed);
+    say!(
+        "{of}{} points: {done} done, {failed} failed, 0 left",
+        done + failed
+    );
     match failed {
         0 => Ok(()),
-        n => Err(LabError::Request(format!("{n} points failed: their errors are in sweep.csv"))),
+        n => Err(LabError::Request(format!(
+            "{n} points failed: their errors are in sweep.csv"
+        ))),
     }
 }
 
@@ -65,12 +85,29 @@ pub fn run_with_bar(
     options: &Options,
 ) -> Result<Counts, LabError> {
     let reopen = || Lab::open(home.clone(), device.options());
-    run_sweep(&reopen, &super::open_scene, sweep, options, &mut bar("points "))
+    run_sweep(
+        &reopen,
+        &super::open_scene,
+        sweep,
+        options,
+        &mut bar("points "),
+    )
 }
 
 fn parse_shard(text: &str) -> Result<Shard, LabError> {
-    let wrong = || LabError::Request(format!("--shard {text}: expected I/N with I from 1 to N, for example 3/16"));
+    let wrong = || {
+        LabError::Request(format!(
+            "--shard {text}: expected I/N with I from 1 to N, for example 3/16"
+        ))
+    };
     let (number, of) = text.split_once('/').ok_or_else(wrong)?;
-    let shard = Shard { number: number.parse().map_err(|_| wrong())?, of: of.parse().map_err(|_| wrong())? };
-    if shard.number == 0 || shard.number > shard.of { Err(wrong()) } else { Ok(shard) }
+    let shard = Shard {
+        number: number.parse().map_err(|_| wrong())?,
+        of: of.parse().map_err(|_| wrong())?,
+    };
+    if shard.number == 0 || shard.number > shard.of {
+        Err(wrong())
+    } else {
+        Ok(shard)
+    }
 }

@@ -39,14 +39,32 @@ pub struct ViewArgs {
 /// Opens the window.
 pub fn run(args: &ViewArgs) -> Result<(), LabError> {
     let home = Workspace::find()?;
-    let size = args.size.as_deref().map(super::adapt::parse_size).transpose()?;
+    let size = args
+        .size
+        .as_deref()
+        .map(super::adapt::parse_size)
+        .transpose()?;
     let gpu = args.device.options();
     let window = WindowOptions {
-        gpu: GpuOptions { device: args.window_device.clone().or(gpu.device.clone()), ..gpu.clone() },
+        gpu: GpuOptions {
+            device: args.window_device.clone().or(gpu.device.clone()),
+            ..gpu.clone()
+        },
         size: super::adapt::parse_size(&args.window)?,
     };
-    let experiment = args.experiment.as_deref().map_or_else(|| home.root.join("configs/cones.ron"), super::found);
+    let experiment = args
+        .experiment
+        .as_deref()
+        .map_or_else(|| home.root.join("configs/cones.ron"), super::found);
     let (scene, events) = (args.scene.clone(), args.events.clone());
-    let options = Options { home, gpu, experiment, scene, size, redo: args.redo, events };
+    let options = Options {
+        home,
+        gpu,
+        experiment,
+        scene,
+        size,
+        redo: args.redo,
+        events,
+    };
     window::run(options, window)
 }

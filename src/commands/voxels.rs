@@ -87,20 +87,38 @@ pub fn run(args: &VoxelsArgs) -> Result<(), LabError> {
         for (name, value) in &set {
             changed.set(name, value);
         }
-        let mut mode = Mode { title, set, score: None, skipped: None, warnings: Vec::new() };
+        let mut mode = Mode {
+            title,
+            set,
+            score: None,
+            skipped: None,
+            warnings: Vec::new(),
+        };
         match voxels_of(&lab, &changed, &loaded, &scene, &wanted) {
             Ok((grid, voxels, warnings)) => {
                 let exact = exact_of(&mut last, grid, &triangles, &surfaces);
                 let found = oracle::compare(&exact.grid, &exact.cells, &voxels);
                 if let Some(folder) = &args.output {
-                    draw(&lab, &experiment, &scene, &exact.grid, &found, &file_stem(folder, &mode.title))?;
+                    draw(
+                        &lab,
+                        &experiment,
+                        &scene,
+                        &exact.grid,
+                        &found,
+                        &file_stem(folder, &mode.title),
+                    )?;
                 }
                 mode.warnings = warnings;
                 mode.score = Some(found.score);
             }
             // One of many that this device cannot run is reported; the only one is an error.
             Err(LabError::Input(why)) if args.all => {
-                mode.skipped = Some(why.iter().map(|d| d.message.clone()).collect::<Vec<_>>().join("; "));
+                mode.skipped = Some(
+                    why.iter()
+                        .map(|d| d.message.clone())
+                        .collect::<Vec<_>>()
+                        .join("; "),
+                );
             }
             Err(error) => return Err(error),
         }
@@ -132,7 +150,11 @@ fn modes_of(loaded: &Loaded, all: bool) -> Result<Vec<(String, Settings)>, LabEr
         return Ok(vec![("as set".into(), Vec::new())]);
     }
     let modes = oracle::modes(&loaded.graph).map(|m| {
-        let set = m.set.0.iter().map(|(name, value)| (name.value.clone(), value.value.0.clone()));
+        let set = m
+            .set
+            .0
+            .iter()
+            .map(|(name, value)| (name.value.clone(), value.value.0.clone()));
         (m.title.clone(), set.collect())
     });
     let modes: Vec<_> = modes.collect();
@@ -160,9 +182,17 @@ fn voxels_of(
     Ok((grid, voxels, warnings))
 }
 
-fn exact_of<'t>(last: &'t mut Option<Exact>, grid: Grid, triangles: &[Triangle], surfaces: &Surfaces<'_>) -> &'t Exact {
+fn exact_of<'t>(
+    last: &'t mut Option<Exact>,
+    grid: Grid,
+    triangles: &[Triangle],
+    surfaces: &Surfaces<'_>,
+) -> &'t Exact {
     let kept = last.take().filter(|t| t.grid == grid);
-    last.insert(kept.unwrap_or_else(|| Exact { cells: oracle::exact(triangles, surfaces, &grid), grid }))
+    last.insert(kept.unwrap_or_else(|| Exact {
+        cells: oracle::exact(triangles, surfaces, &grid),
+        grid,
+    }))
 }
 
 fn file_stem(folder: &Path, title: &str) -> PathBuf {
@@ -194,7 +224,10 @@ fn draw(
     view.params.clear();
     let mut output = String::new();
     let (mut session, _) = lab.prepare(&view, Arc::new(cubes), |graph| {
-        output = graph.output.clone().ok_or_else(|| LabError::Request("graph 'preview' has no `output`".into()))?;
+        output = graph
+            .output
+            .clone()
+            .ok_or_else(|| LabError::Request("graph 'preview' has no `output`".into()))?;
         Ok(vec![output.clone()])
     })?;
     session.run(1)?;

@@ -6,12 +6,20 @@ pub fn harmless(text: &str) -> String {
 }
 
 fn plain(c: char) -> char {
-    if c.is_control() && c != '\n' && c != '\t' { char::REPLACEMENT_CHARACTER } else { c }
+    if c.is_control() && c != '\n' && c != '\t' {
+        char::REPLACEMENT_CHARACTER
+    } else {
+        c
+    }
 }
 
 /// At most so many characters, with a mark where there are more, and nothing in it that a terminal would obey.
 pub fn excerpt(text: &str, most: usize) -> String {
-    let mut out: String = text.chars().take(most).map(|c| if c == '\t' { ' ' } else { plain(c) }).collect();
+    let mut out: String = text
+        .chars()
+        .take(most)
+        .map(|c| if c == '\t' { ' ' } else { plain(c) })
+        .collect();
     if text.chars().nth(most).is_some() {
         out.push_str(" ...");
     }
@@ -20,14 +28,31 @@ pub fn excerpt(text: &str, most: usize) -> String {
 
 /// The part of a line round a column (from 1; 0 when it is not known), at most so many characters.
 pub fn excerpt_at(line: &str, column: usize, most: usize) -> String {
-    let first = if column + 20 > most { column - most / 2 } else { 0 };
-    let rest = line.char_indices().nth(first).map_or("", |(i, _)| &line[i..]);
-    format!("{}{}", if first > 0 { "... " } else { "" }, excerpt(rest, most))
+    let first = if column + 20 > most {
+        column - most / 2
+    } else {
+        0
+    };
+    let rest = line
+        .char_indices()
+        .nth(first)
+        .map_or("", |(i, _)| &line[i..]);
+    format!(
+        "{}{}",
+        if first > 0 { "... " } else { "" },
+        excerpt(rest, most)
+    )
 }
 
 /// Names one after another, the middle of many left out.
 pub fn chain(names: &[String]) -> String {
-    let short = |names: &[String]| names.iter().map(|n| excerpt(n, 60)).collect::<Vec<_>>().join(" > ");
+    let short = |names: &[String]| {
+        names
+            .iter()
+            .map(|n| excerpt(n, 60))
+            .collect::<Vec<_>>()
+            .join(" > ")
+    };
     match names.len() {
         0..=8 => short(names),
         n => format!("{} > ... > {}", short(&names[..4]), short(&names[n - 3..])),

@@ -50,12 +50,21 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// An error at a place.
     pub fn error(place: Place, message: impl Into<String>) -> Diagnostic {
-        Diagnostic { severity: Severity::Error, place, message: message.into(), help: None, source: None }
+        Diagnostic {
+            severity: Severity::Error,
+            place,
+            message: message.into(),
+            help: None,
+            source: None,
+        }
     }
 
     /// A warning at a place.
     pub fn warning(place: Place, message: impl Into<String>) -> Diagnostic {
-        Diagnostic { severity: Severity::Warning, ..Diagnostic::error(place, message) }
+        Diagnostic {
+            severity: Severity::Warning,
+            ..Diagnostic::error(place, message)
+        }
     }
 
     /// With a hint.
@@ -66,7 +75,10 @@ impl Diagnostic {
 
     /// Messages one below the other.
     pub fn joined(list: &[Diagnostic]) -> String {
-        list.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+        list.iter()
+            .map(ToString::to_string)
+            .collect::<Vec<_>>()
+            .join("\n")
     }
 
     /// With the nearest of the known names, or all of them when they are few.
@@ -92,10 +104,18 @@ impl fmt::Display for Diagnostic {
                 write!(f, ":{}", self.place.column)?;
             }
         }
-        let level = if self.severity == Severity::Error { "error" } else { "warning" };
+        let level = if self.severity == Severity::Error {
+            "error"
+        } else {
+            "warning"
+        };
         write!(f, ": {level}: {}", excerpt(&self.message, MAX_MESSAGE))?;
         if let Some(source) = self.source.as_ref().filter(|_| !option) {
-            write!(f, "\n    | {}", excerpt_at(source.trim_end(), self.place.column as usize, MAX_LINE))?;
+            write!(
+                f,
+                "\n    | {}",
+                excerpt_at(source.trim_end(), self.place.column as usize, MAX_LINE)
+            )?;
         }
         if let Some(help) = &self.help {
             write!(f, "\n    = help: {}", excerpt(help, MAX_MESSAGE))?;
@@ -111,7 +131,12 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     known.dedup();
     let close = known
         .iter()
-        .map(|k| (strsim::jaro_winkler(&name.to_lowercase(), &k.to_lowercase()), *k))
+        .map(|k| {
+            (
+                strsim::jaro_winkler(&name.to_lowercase(), &k.to_lowercase()),
+                *k,
+            )
+        })
         .max_by(|a, b| a.0.total_cmp(&b.0));
     match close {
         Some((score, k)) if score > 0.8 => Some(format!("did you mean '{k}'?")),
@@ -152,7 +177,13 @@ impl Sources {
     /// Reads a file; the error says which and why.
     pub fn read(&mut self, path: &Path) -> Result<u32, Diagnostic> {
         let fail = |why: String| {
-            Diagnostic::error(Place { file: path.to_path_buf(), ..Place::default() }, format!("cannot read it: {why}"))
+            Diagnostic::error(
+                Place {
+                    file: path.to_path_buf(),
+                    ..Place::default()
+                },
+                format!("cannot read it: {why}"),
+            )
         };
         let text = read_input_text(path, MAX_BYTES).map_err(|e| fail(e.to_string()))?;
         Ok(self.add(path, text))
@@ -176,16 +207,24 @@ impl Sources {
 
     /// Whether all files read are still as they were.
     pub fn are_current(&self) -> bool {
-        self.files.iter().all(|(path, text)| read_input_text(path, MAX_BYTES).is_ok_and(|now| now == *text))
+        self.files
+            .iter()
+            .all(|(path, text)| read_input_text(path, MAX_BYTES).is_ok_and(|now| now == *text))
     }
 
     /// Line and column of an offset.
     pub fn place(&self, at: At) -> Place {
-        let Some((file, text)) = self.files.get(at.file as usize) else { return Place::default() };
+        let Some((file, text)) = self.files.get(at.file as usize) else {
+            return Place::default();
+        };
         let before = text.get(..at.offset as usize).unwrap_or(text);
         let line = before.matches('\n').count() + 1;
         let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
-        Place { file: file.clone(), line: u32::try_from(line).unwrap_or(0), column: u32::try_from(column).unwrap_or(0) }
+        Place {
+            file: file.clone(),
+            line: u32::try_from(line).unwrap_or(0),
+            column: u32::try_from(column).unwrap_or(0),
+        }
     }
 
     /// An error at an offset, with the line it stands in.
@@ -196,7 +235,10 @@ impl Sources {
             .get(at.file as usize)
             .and_then(|(_, text)| text.lines().nth(place.line.saturating_sub(1) as usize))
             .map(String::from);
-        Diagnostic { source, ..Diagnostic::error(place, message) }
+        Diagnostic {
+            source,
+            ..Diagnostic::error(place, message)
+        }
     }
 
     /// Parses a file into `T`. Wrong items inside [`Items`] and [`Entries`] are reported and left out; the names in them
@@ -207,7 +249,10 @@ impl Sources {
         errors: &mut Vec<Diagnostic>,
         broken: &mut Vec<String>,
     ) -> Option<T> {
-        let text = self.files.get(file as usize).map_or("", |(_, t)| t.as_str());
+        let text = self
+            .files
+            .get(file as usize)
+            .map_or("", |(_, t)| t.as_str());
         CONTEXT.set(Some(Context {
             file,
             base: text.as_ptr() as usize,
@@ -238,7 +283,8 @@ impl Sources {
 
 /// How RON is read everywhere: `Some(x)` may be written `x`, and `Variant((a: 1))` as `Variant(a: 1)`.
 pub fn options() -> ron::Options {
-    ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_VARIANT_NEWTYPES)
+    ron::Options::default()
+        .with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_VARIANT_NEWTYPES)
 }
 
 struct Context {
@@ -261,16 +307,26 @@ pub const TOO_DEEP: &str = "brackets are nested too deeply; remove brackets arou
 
 fn explain(error: &ron::Error) -> (String, Option<String>) {
     match error {
-        ron::Error::NoSuchStructField { expected, found, .. } => {
-            (format!("unknown field '{found}'"), nearest(found, expected.iter().copied()))
+        ron::Error::NoSuchStructField {
+            expected, found, ..
+        } => (
+            format!("unknown field '{found}'"),
+            nearest(found, expected.iter().copied()),
+        ),
+        ron::Error::NoSuchEnumVariant {
+            expected, found, ..
+        } => (
+            format!("unknown name '{found}'"),
+            nearest(found, expected.iter().copied()),
+        ),
+        ron::Error::MissingStructField { field, .. } => {
+            (format!("field '{field}' is missing"), None)
         }
-        ron::Error::NoSuchEnumVariant { expected, found, .. } => {
-            (format!("unknown name '{found}'"), nearest(found, expected.iter().copied()))
-        }
-        ron::Error::MissingStructField { field, .. } => (format!("field '{field}' is missing"), None),
         ron::Error::ExpectedComma => (
             String::from("expected a comma"),
-            Some(String::from("one is missing before this, or a whole number has a point")),
+            Some(String::from(
+                "one is missing before this, or a whole number has a point",
+            )),
         ),
         ron::Error::ExpectedRawValue => (String::from("expected one value"), None),
         ron::Error::ExceededRecursionLimit => (TOO_DEEP.into(), None),
@@ -280,8 +336,16 @@ fn explain(error: &ron::Error) -> (String, Option<String>) {
 }
 
 fn offset_of(text: &str, line: usize, column: usize) -> u32 {
-    let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
-    let inside: usize = text[start.min(text.len())..].chars().take(column.saturating_sub(1)).map(char::len_utf8).sum();
+    let start: usize = text
+        .split_inclusive('\n')
+        .take(line.saturating_sub(1))
+        .map(str::len)
+        .sum();
+    let inside: usize = text[start.min(text.len())..]
+        .chars()
+        .take(column.saturating_sub(1))
+        .map(char::len_utf8)
+        .sum();
     u32::try_from((start + inside).min(text.len())).unwrap_or(0)
 }
 
@@ -290,7 +354,10 @@ pub(super) fn offset_in_file(slice: &str) -> At {
     CONTEXT.with_borrow(|context| {
         context.as_ref().map_or(At::default(), |c| {
             let offset = (slice.as_ptr() as usize).wrapping_sub(c.base);
-            At { file: c.file, offset: u32::try_from(if offset <= c.len { offset } else { 0 }).unwrap_or(0) }
+            At {
+                file: c.file,
+                offset: u32::try_from(if offset <= c.len { offset } else { 0 }).unwrap_or(0),
+            }
         })
     })
 }
@@ -320,7 +387,11 @@ fn parse_raw<'de, T: Deserialize<'de>>(raw: &'de ron::value::RawValue) -> Option
         Err(e) => {
             let (message, help) = explain(&e.code);
             if message != REPORTED {
-                report(at.offset + offset_of(text, e.span.start.line, e.span.start.col), message, help);
+                report(
+                    at.offset + offset_of(text, e.span.start.line, e.span.start.col),
+                    message,
+                    help,
+                );
             }
             // Every quoted word of a broken item may be the name of something.
             mark_broken(text.split('"').skip(1).step_by(2));
@@ -337,8 +408,12 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Loc<T> {
 }
 
 /// Reads what stands in a raw value; a mistake is reported where it stands.
-pub(super) fn nested<'de, T: Deserialize<'de>, E: serde::de::Error>(raw: &'de ron::value::RawValue) -> Result<T, E> {
-    parse_raw(raw).map(|found| found.value).ok_or_else(|| E::custom(REPORTED))
+pub(super) fn nested<'de, T: Deserialize<'de>, E: serde::de::Error>(
+    raw: &'de ron::value::RawValue,
+) -> Result<T, E> {
+    parse_raw(raw)
+        .map(|found| found.value)
+        .ok_or_else(|| E::custom(REPORTED))
 }
 
 /// A list whose wrong items are reported and left out.
@@ -376,9 +451,14 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Entries<T> {
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a map from names to values: { \"name\": (...) }")
             }
-            fn visit_map<A: serde::de::MapAccess<'de>>(self, mut map: A) -> Result<Entries<T>, A::Error> {
+            fn visit_map<A: serde::de::MapAccess<'de>>(
+                self,
+                mut map: A,
+            ) -> Result<Entries<T>, A::Error> {
                 let mut out: Vec<(Loc<String>, Loc<T>)> = Vec::new();
-                while let Some((key, raw)) = map.next_entry::<Loc<String>, &'de ron::value::RawValue>()? {
+                while let Some((key, raw)) =
+                    map.next_entry::<Loc<String>, &'de ron::value::RawValue>()?
+                {
                     let twice = out.iter().any(|(k, _)| k.value == key.value);
                     if twice {
                         report(key.at.offset, format!("'{}' stands twice", key.value), None);
@@ -404,17 +484,24 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for TwoOrThree<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         type Raw<'r> = &'r ron::value::RawValue;
         let text = Raw::deserialize(deserializer)?.get_ron();
-        let parts: Vec<Raw<'de>> = match options().from_str::<(Raw<'de>, Raw<'de>, Raw<'de>)>(text) {
+        let parts: Vec<Raw<'de>> = match options().from_str::<(Raw<'de>, Raw<'de>, Raw<'de>)>(text)
+        {
             Ok((a, b, c)) => vec![a, b, c],
             Err(_) => match options().from_str::<(Raw<'de>, Raw<'de>)>(text) {
                 Ok((a, b)) => vec![a, b],
                 Err(_) => {
-                    return Err(D::Error::custom("expected two sizes (width, height) or three (width, height, depth)"));
+                    return Err(D::Error::custom(
+                        "expected two sizes (width, height) or three (width, height, depth)",
+                    ));
                 }
             },
         };
         let values: Vec<Loc<T>> = parts.iter().copied().filter_map(parse_raw).collect();
-        if values.len() < parts.len() { Err(D::Error::custom(REPORTED)) } else { Ok(TwoOrThree(values)) }
+        if values.len() < parts.len() {
+            Err(D::Error::custom(REPORTED))
+        } else {
+            Ok(TwoOrThree(values))
+        }
     }
 }
 

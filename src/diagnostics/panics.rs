@@ -25,9 +25,13 @@ pub fn caught<T>(read: impl FnOnce() -> T) -> Result<T, String> {
             if !CAUGHT.get() {
                 return usual(panic);
             }
-            let place = panic.location().map_or(String::new(), |l| format!("{}:{}", l.file(), l.line()));
+            let place = panic
+                .location()
+                .map_or(String::new(), |l| format!("{}:{}", l.file(), l.line()));
             // Of a dependency: its name and version, and the file in it.
-            let crates = place.find("/registry/src/").and_then(|i| place[i + 14..].find('/').map(|j| i + 15 + j));
+            let crates = place
+                .find("/registry/src/")
+                .and_then(|i| place[i + 14..].find('/').map(|j| i + 15 + j));
             PLACE.set(place[crates.unwrap_or(0)..].to_owned());
         }));
     });
@@ -40,12 +44,17 @@ pub fn caught<T>(read: impl FnOnce() -> T) -> Result<T, String> {
 /// What a panic said.
 pub fn said(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<&str>().copied();
-    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message")
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("no message")
 }
 
 fn message(panic: &(dyn Any + Send)) -> String {
     let first = said(panic).lines().next().unwrap_or_default();
-    format!("its reader gave up ({} at {})", excerpt(first, 200), PLACE.take())
+    format!(
+        "its reader gave up ({} at {})",
+        excerpt(first, 200),
+        PLACE.take()
+    )
 }
 
 #[cfg(test)]
@@ -56,6 +65,9 @@ mod tests {
     fn a_panic_is_its_message() {
         assert_eq!(caught(|| 3), Ok(3));
         let told = caught(|| panic!("no {}", "such thing")).unwrap_err();
-        assert!(told.starts_with("its reader gave up (no such thing at src/diagnostics/panics.rs:"), "{told}");
+        assert!(
+            told.starts_with("its reader gave up (no such thing at src/diagnostics/panics.rs:"),
+            "{told}"
+        );
     }
 }

@@ -11,8 +11,16 @@ use std::sync::Arc;
 impl Experiment {
     /// All that [`Experiment::adapt_scene`] changes, as text: experiments of one text light a scene alike.
     pub fn light(&self) -> String {
-        let lights: Vec<String> = self.lights.iter().map(|(name, l)| format!("{} {l:?}", name.value)).collect();
-        format!("{:?} {:?} {lights:?}", self.sky, self.environment.as_ref().map(|e| &e.value))
+        let lights: Vec<String> = self
+            .lights
+            .iter()
+            .map(|(name, l)| format!("{} {l:?}", name.value))
+            .collect();
+        format!(
+            "{:?} {:?} {lights:?}",
+            self.sky,
+            self.environment.as_ref().map(|e| &e.value)
+        )
     }
 
     /// Changes sky and lights of the scene as the experiment says. Doing it twice changes nothing more.
@@ -27,7 +35,10 @@ impl Experiment {
             for light in scene.lights.iter_mut().filter(|l| l.name == name.value) {
                 known = true;
                 if let Err(message) = apply(change, light) {
-                    errors.push(self.sources.error(name.at, format!("light '{}' {message}", name.value)));
+                    errors.push(
+                        self.sources
+                            .error(name.at, format!("light '{}' {message}", name.value)),
+                    );
                     break;
                 }
             }
@@ -39,13 +50,19 @@ impl Experiment {
             return Err(ExperimentError::Input(errors));
         }
         scene.sky = self.sky.map_or(scene.sky, Vec3::from);
-        self.adapt_environment(scene).map_err(|error| ExperimentError::Input(vec![error]))
+        self.adapt_environment(scene)
+            .map_err(|error| ExperimentError::Input(vec![error]))
     }
 
     fn adapt_environment(&self, scene: &mut Scene) -> Result<(), Diagnostic> {
-        let Some(Loc { value: change, at }) = &self.environment else { return Ok(()) };
+        let Some(Loc { value: change, at }) = &self.environment else {
+            return Ok(());
+        };
         let has = |scene: &Scene, file: &str| {
-            scene.environment.as_ref().is_some_and(|e| e.file.as_deref() == Some(Path::new(file)))
+            scene
+                .environment
+                .as_ref()
+                .is_some_and(|e| e.file.as_deref() == Some(Path::new(file)))
         };
         if let Some(file) = change.file.as_ref().filter(|file| !has(scene, file)) {
             let read = environment::read(Path::new(file), &mut scene.warnings);
@@ -69,21 +86,32 @@ impl Experiment {
     pub fn adapted(&self, scene: Arc<Scene>) -> Result<Arc<Scene>, ExperimentError> {
         let name = scene.name.clone();
         let (lights, environment) = (scene.lights.clone(), scene.environment.clone());
-        let mut light = Scene { name, lights, sky: scene.sky, environment, ..Scene::default() };
+        let mut light = Scene {
+            name,
+            lights,
+            sky: scene.sky,
+            environment,
+            ..Scene::default()
+        };
         self.adapt_scene(&mut light)?;
-        if (&light.lights, light.sky, &light.environment) == (&scene.lights, scene.sky, &scene.environment) {
+        if (&light.lights, light.sky, &light.environment)
+            == (&scene.lights, scene.sky, &scene.environment)
+        {
             return Ok(scene);
         }
         let mut scene = scene;
         let changed = Arc::make_mut(&mut scene);
-        (changed.lights, changed.sky, changed.environment) = (light.lights, light.sky, light.environment);
+        (changed.lights, changed.sky, changed.environment) =
+            (light.lights, light.sky, light.environment);
         changed.warnings.extend(light.warnings);
         Ok(scene)
     }
 
     fn no_light(&self, name: &Loc<String>, scene: &Scene) -> Diagnostic {
         let message = format!("scene '{}' has no light '{}'", scene.name, name.value);
-        self.sources.error(name.at, message).nearest(&name.value, scene.lights.iter().map(|l| l.name.as_str()))
+        self.sources
+            .error(name.at, message)
+            .nearest(&name.value, scene.lights.iter().map(|l| l.name.as_str()))
     }
 }
 
@@ -92,7 +120,9 @@ pub(super) fn change_to(light: &Light) -> LightChange {
     let directed = !matches!(light.kind, LightKind::Point);
     let placed = !matches!(light.kind, LightKind::Directional);
     let angles = match light.kind {
-        LightKind::Spot { inner, outer } => Some((f64::from(inner).to_degrees(), f64::from(outer).to_degrees())),
+        LightKind::Spot { inner, outer } => {
+            Some((f64::from(inner).to_degrees(), f64::from(outer).to_degrees()))
+        }
         _ => None,
     };
     LightChange {
@@ -107,7 +137,9 @@ pub(super) fn change_to(light: &Light) -> LightChange {
 fn apply(change: &LightChange, light: &mut Light) -> Result<(), String> {
     light.color = change.color.map_or(light.color, Vec3::from);
     match (change.position, light.kind) {
-        (Some(_), LightKind::Directional) => return Err("is directional and has no position".into()),
+        (Some(_), LightKind::Directional) => {
+            return Err("is directional and has no position".into());
+        }
         (Some(position), _) => light.position = position.into(),
         (None, _) => {}
     }
@@ -132,5 +164,9 @@ fn apply(change: &LightChange, light: &mut Light) -> Result<(), String> {
 
 /// What is a unit vector already keeps its bits, so that a direction that was written out is read as it was.
 fn unit(v: Vec3) -> Vec3 {
-    if v.is_normalized() { v } else { v.try_normalize().unwrap_or(Vec3::NEG_Y) }
+    if v.is_normalized() {
+        v
+    } else {
+        v.try_normalize().unwrap_or(Vec3::NEG_Y)
+    }
 }

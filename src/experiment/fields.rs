@@ -1,8 +1,12 @@
 //! The fields of an experiment that have a name and a value: who writes, changes or compares experiments reads them here.
 
 use super::read::{check_sky, check_time, in_folder, scene_path};
-use super::write::{camera_text, environment_in, quoted, same_environment, same_scene, scene_text, vector};
-use super::{CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, check_size};
+use super::write::{
+    camera_text, environment_in, quoted, same_environment, same_scene, scene_text, vector,
+};
+use super::{
+    CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, check_size,
+};
 use crate::diagnostics::{At, Loc, options};
 use serde::de::DeserializeOwned;
 use std::path::Path;
@@ -30,14 +34,20 @@ pub static FIELDS: &[Field] = &[
     },
     Field {
         name: "scene",
-        set: |e, v| v.read("a scene's name or file").map(|scene: String| e.scene = scene_path(v.folder, &scene)),
+        set: |e, v| {
+            v.read("a scene's name or file")
+                .map(|scene: String| e.scene = scene_path(v.folder, &scene))
+        },
         text: |e, path| quoted(&scene_text(&e.scene, path)),
         absent: |_| false,
         same: |a, b| same_scene(&a.scene, &b.scene),
     },
     Field {
         name: "camera",
-        set: |e, v| v.read("a camera's name, or a camera written out").map(|camera| e.camera = camera),
+        set: |e, v| {
+            v.read("a camera's name, or a camera written out")
+                .map(|camera| e.camera = camera)
+        },
         text: |e, _| camera_text(&e.camera),
         absent: |e| e.camera == CameraChoice::Named(DEFAULT_CAMERA.into()),
         same: |a, b| a.camera == b.camera,
@@ -76,10 +86,14 @@ pub static FIELDS: &[Field] = &[
     Field {
         name: "environment",
         set: |e, v| {
-            let change: EnvironmentChange = v.read("(file: \"sky.hdr\", rotation: degrees, intensity: 1)")?;
+            let change: EnvironmentChange =
+                v.read("(file: \"sky.hdr\", rotation: degrees, intensity: 1)")?;
             change.check()?;
             let before = e.environment.take().map(|e| e.value).unwrap_or_default();
-            e.environment = Some(Loc { value: before.overlaid(in_folder(v.folder, change)), at: v.at });
+            e.environment = Some(Loc {
+                value: before.overlaid(in_folder(v.folder, change)),
+                at: v.at,
+            });
             Ok(())
         },
         text: environment_in,
@@ -99,7 +113,9 @@ struct Given<'g> {
 impl Given<'_> {
     fn read<T: DeserializeOwned>(&self, expected: &str) -> Result<T, String> {
         let Given { name, text, .. } = self;
-        options().from_str(text).map_err(|_| format!("'{name}': expected {expected}, got {text}"))
+        options()
+            .from_str(text)
+            .map_err(|_| format!("'{name}': expected {expected}, got {text}"))
     }
 }
 
@@ -118,7 +134,21 @@ impl Field {
     ///
     /// # Errors
     /// Another value than the field takes: the text for the user.
-    pub fn set(&self, experiment: &mut Experiment, text: &str, folder: &Path, at: At) -> Result<(), String> {
-        (self.set)(experiment, &Given { name: self.name, text, folder, at })
+    pub fn set(
+        &self,
+        experiment: &mut Experiment,
+        text: &str,
+        folder: &Path,
+        at: At,
+    ) -> Result<(), String> {
+        (self.set)(
+            experiment,
+            &Given {
+                name: self.name,
+                text,
+                folder,
+                at,
+            },
+        )
     }
 }

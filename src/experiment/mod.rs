@@ -70,7 +70,14 @@ fn y_up() -> (f32, f32, f32) {
 impl PlacedCamera {
     /// A camera that stands upright, with a near plane from the scene's size.
     pub fn new(eye: (f32, f32, f32), target: (f32, f32, f32), fov_y: f32) -> PlacedCamera {
-        PlacedCamera { eye, target, up: y_up(), fov_y, near: None, far: None }
+        PlacedCamera {
+            eye,
+            target,
+            up: y_up(),
+            fov_y,
+            near: None,
+            far: None,
+        }
     }
 
     /// What is wrong with its numbers.
@@ -84,12 +91,17 @@ impl PlacedCamera {
         }
         let (eye, target) = (Vec3::from(self.eye), Vec3::from(self.target));
         if eye.abs().max(target.abs()).max_element() > MAX_COORDINATE {
-            return Err(format!("the camera must be within {MAX_COORDINATE:e} m of the origin"));
+            return Err(format!(
+                "the camera must be within {MAX_COORDINATE:e} m of the origin"
+            ));
         }
         if eye == target {
             return Err("the camera's eye and target are one place".into());
         }
-        let (near, far) = (self.near.unwrap_or(f32::MIN_POSITIVE), self.far.unwrap_or(f32::MAX));
+        let (near, far) = (
+            self.near.unwrap_or(f32::MIN_POSITIVE),
+            self.far.unwrap_or(f32::MAX),
+        );
         if !(near > 0.0 && far > near && far.is_finite()) {
             return Err("the camera's planes must obey 0 < near < far".into());
         }
@@ -196,8 +208,16 @@ const DEFAULT_CAMERA: &str = "default";
 impl Experiment {
     /// Sets a parameter to a value in RON, over whatever is said of it now.
     pub fn set(&mut self, name: &str, value: &str) {
-        let file = self.sources.add("set by the program".as_ref(), format!("{name} = {value}"));
-        self.params.push((Loc { value: name.into(), at: At { file, offset: 0 } }, value.into()));
+        let file = self
+            .sources
+            .add("set by the program".as_ref(), format!("{name} = {value}"));
+        self.params.push((
+            Loc {
+                value: name.into(),
+                at: At { file, offset: 0 },
+            },
+            value.into(),
+        ));
     }
 
     /// The values of all parameters: `defaults`, then what the experiment sets.
@@ -212,7 +232,11 @@ impl Experiment {
                 errors.push(self.sources.error(name.at, message));
             }
         }
-        if errors.is_empty() { Ok(params) } else { Err(ExperimentError::Input(errors)) }
+        if errors.is_empty() {
+            Ok(params)
+        } else {
+            Err(ExperimentError::Input(errors))
+        }
     }
 }
 
@@ -222,7 +246,9 @@ impl Experiment {
 /// The text for the user.
 pub fn check_size((width, height): (u32, u32)) -> Result<(), String> {
     if width == 0 || height == 0 || width > MAX_SIZE || height > MAX_SIZE {
-        return Err(format!("a picture of {width}x{height} cannot be made: each side is 1 to {MAX_SIZE} pixels"));
+        return Err(format!(
+            "a picture of {width}x{height} cannot be made: each side is 1 to {MAX_SIZE} pixels"
+        ));
     }
     Ok(())
 }
@@ -243,8 +269,13 @@ pub fn checked_name(name: &str) -> Result<String, ExperimentError> {
     if name.len() > MAX_NAME {
         return Err(wrong(&format!("it has more than {MAX_NAME} bytes")));
     }
-    match name.chars().find(|c| !c.is_alphanumeric() && !"-_".contains(*c)) {
-        Some(c) => Err(wrong(&format!("{c:?} is not allowed; use letters, digits, - and _"))),
+    match name
+        .chars()
+        .find(|c| !c.is_alphanumeric() && !"-_".contains(*c))
+    {
+        Some(c) => Err(wrong(&format!(
+            "{c:?} is not allowed; use letters, digits, - and _"
+        ))),
         None => Ok(name),
     }
 }

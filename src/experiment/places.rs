@@ -13,11 +13,24 @@ impl Experiment {
 
     fn place_of(&self, field: &str) -> Option<At> {
         let (path, text) = self.sources.texts().next()?;
-        let entry = spans::body(text, 0)?.entries.into_iter().find(|e| e.key == field)?;
-        let at = At { file: 0, offset: u32::try_from(entry.value.start).ok()? };
+        let entry = spans::body(text, 0)?
+            .entries
+            .into_iter()
+            .find(|e| e.key == field)?;
+        let at = At {
+            file: 0,
+            offset: u32::try_from(entry.value.start).ok()?,
+        };
         let (field, mut written) = (Field::of(field)?, self.clone());
         let value = text.get(entry.value)?;
-        field.set(&mut written, value, path.parent().unwrap_or(Path::new(".")), at).ok()?;
+        field
+            .set(
+                &mut written,
+                value,
+                path.parent().unwrap_or(Path::new(".")),
+                at,
+            )
+            .ok()?;
         (field.same)(&written, self).then_some(at)
     }
 }

@@ -1,7 +1,8 @@
 //! Reading experiments.
 
 use super::{
-    CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, LightChange, PlacedCamera, check_size,
+    CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, LightChange,
+    PlacedCamera, check_size,
 };
 use crate::diagnostics::{Diagnostic, Entries, Loc, RawText, Severity, Sources};
 use crate::files::{path_of, spec_of};
@@ -16,7 +17,9 @@ impl<'de> Deserialize<'de> for CameraChoice {
         impl<'de> Visitor<'de> for V {
             type Value = CameraChoice;
             fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("a camera's name, or (eye: (x, y, z), target: (x, y, z), fov_y: degrees)")
+                f.write_str(
+                    "a camera's name, or (eye: (x, y, z), target: (x, y, z), fov_y: degrees)",
+                )
             }
             fn visit_str<E>(self, name: &str) -> Result<CameraChoice, E> {
                 Ok(CameraChoice::Named(name.into()))
@@ -57,9 +60,11 @@ impl Experiment {
     /// All mistakes of the file.
     pub fn read(path: &Path) -> Result<Experiment, Vec<Diagnostic>> {
         let mut sources = Sources::default();
-        let file = sources
-            .read(path)
-            .map_err(|e| vec![e.help(Some("give the path of an experiment, for example configs/rays.ron".into()))])?;
+        let file = sources.read(path).map_err(|e| {
+            vec![e.help(Some(
+                "give the path of an experiment, for example configs/rays.ron".into(),
+            ))]
+        })?;
         parse(path, sources, file)
     }
 
@@ -77,7 +82,8 @@ impl Experiment {
 fn parse(path: &Path, sources: Sources, file: u32) -> Result<Experiment, Vec<Diagnostic>> {
     let mut errors = Vec::new();
     let parsed = sources.parse::<ExperimentFile>(file, &mut errors, &mut Vec::new());
-    let Some(parsed) = parsed.filter(|_| !errors.iter().any(|e| e.severity == Severity::Error)) else {
+    let Some(parsed) = parsed.filter(|_| !errors.iter().any(|e| e.severity == Severity::Error))
+    else {
         return Err(errors);
     };
     let size = parsed.size.as_ref().map_or(DEFAULT_SIZE, |s| s.value);
@@ -90,7 +96,12 @@ fn parse(path: &Path, sources: Sources, file: u32) -> Result<Experiment, Vec<Dia
         parsed.sky.as_ref().map(|s| (s.at, check_sky(s.value))),
         parsed.environment.as_ref().map(|e| (e.at, e.value.check())),
     ];
-    errors.extend(wrong.into_iter().flatten().filter_map(|(at, check)| Some(sources.error(at, check.err()?))));
+    errors.extend(
+        wrong
+            .into_iter()
+            .flatten()
+            .filter_map(|(at, check)| Some(sources.error(at, check.err()?))),
+    );
     for (name, change) in &parsed.lights.0 {
         if let Err(message) = check_light(&change.value) {
             errors.push(sources.error(change.at, format!("light '{}': {message}", name.value)));
@@ -101,26 +112,51 @@ fn parse(path: &Path, sources: Sources, file: u32) -> Result<Experiment, Vec<Dia
     }
     let folder = path.parent().unwrap_or(Path::new("."));
     Ok(Experiment {
-        name: path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned()),
+        name: path
+            .file_stem()
+            .map_or(String::new(), |s| s.to_string_lossy().into_owned()),
         graph: parsed.graph.value,
         scene: scene_path(folder, &parsed.scene.value),
-        camera: parsed.camera.map_or(CameraChoice::Named(DEFAULT_CAMERA.into()), |c| c.value),
+        camera: parsed
+            .camera
+            .map_or(CameraChoice::Named(DEFAULT_CAMERA.into()), |c| c.value),
         size,
         time: parsed.time.map_or(0.0, |t| t.value),
         sky: parsed.sky.map(|s| s.value),
-        environment: parsed.environment.map(|Loc { value, at }| Loc { value: in_folder(folder, value), at }),
-        lights: parsed.lights.0.into_iter().map(|(name, change)| (name, change.value)).collect(),
-        params: parsed.params.0.into_iter().map(|(name, value)| (name, value.value.0)).collect(),
+        environment: parsed.environment.map(|Loc { value, at }| Loc {
+            value: in_folder(folder, value),
+            at,
+        }),
+        lights: parsed
+            .lights
+            .0
+            .into_iter()
+            .map(|(name, change)| (name, change.value))
+            .collect(),
+        params: parsed
+            .params
+            .0
+            .into_iter()
+            .map(|(name, value)| (name, value.value.0))
+            .collect(),
         sources,
     })
 }
 
 pub(super) fn check_time(time: f64) -> Result<(), String> {
-    if time.is_finite() { Ok(()) } else { Err("the time must be a finite number of seconds".into()) }
+    if time.is_finite() {
+        Ok(())
+    } else {
+        Err("the time must be a finite number of seconds".into())
+    }
 }
 
 pub(super) fn check_sky(sky: (f32, f32, f32)) -> Result<(), String> {
-    if is_colour(sky) { Ok(()) } else { Err("the sky's radiance must be finite and not negative".into()) }
+    if is_colour(sky) {
+        Ok(())
+    } else {
+        Err("the sky's radiance must be finite and not negative".into())
+    }
 }
 
 fn is_colour(c: (f32, f32, f32)) -> bool {
@@ -135,10 +171,17 @@ fn check_light(change: &LightChange) -> Result<(), String> {
     if change.position.is_some_and(|p| !Vec3::from(p).is_finite()) {
         return Err("its position must be finite".into());
     }
-    if change.direction.is_some_and(|d| Vec3::from(d).try_normalize().is_none()) {
+    if change
+        .direction
+        .is_some_and(|d| Vec3::from(d).try_normalize().is_none())
+    {
         return Err("its direction must be finite and not zero".into());
     }
-    if [change.inner, change.outer].iter().flatten().any(|a| !(0.0..=89.0).contains(a)) {
+    if [change.inner, change.outer]
+        .iter()
+        .flatten()
+        .any(|a| !(0.0..=89.0).contains(a))
+    {
         return Err("its angles must be 0 to 89 degrees".into());
     }
     Ok(())
@@ -146,11 +189,18 @@ fn check_light(change: &LightChange) -> Result<(), String> {
 
 /// The same with its file looked up beside the experiment first.
 pub(super) fn in_folder(folder: &Path, change: EnvironmentChange) -> EnvironmentChange {
-    EnvironmentChange { file: change.file.map(|file| scene_path(folder, &file)), ..change }
+    EnvironmentChange {
+        file: change.file.map(|file| scene_path(folder, &file)),
+        ..change
+    }
 }
 
 /// Names stay; files are looked up beside the experiment first.
 pub(super) fn scene_path(folder: &Path, scene: &str) -> String {
     let beside = folder.join(path_of(scene));
-    if scene.contains('.') && beside.is_file() { spec_of(&beside) } else { scene.to_string() }
+    if scene.contains('.') && beside.is_file() {
+        spec_of(&beside)
+    } else {
+        scene.to_string()
+    }
 }

@@ -54,7 +54,12 @@ pub(super) fn body(text: &str, at: usize) -> Option<Body> {
         let comma = text.get(at..)?.starts_with(',');
         at += usize::from(comma);
         let end = if comma { at } else { value_end };
-        entries.push(Entry { key, whole: start..end, value: value_start..value_end, comma });
+        entries.push(Entry {
+            key,
+            whole: start..end,
+            value: value_start..value_end,
+            comma,
+        });
         at = blank(text, at);
     }
 }
@@ -145,7 +150,9 @@ pub(super) fn apply(text: &str, mut edits: Edits) -> String {
 /// Takes an entry out; with its line when nothing else but a comment stands there.
 pub(super) fn remove(text: &str, entry: &Entry) -> (Range<usize>, String) {
     let line = text[..entry.whole.start].rfind('\n').map_or(0, |i| i + 1);
-    let end = text[entry.whole.end..].find('\n').map(|i| entry.whole.end + i + 1);
+    let end = text[entry.whole.end..]
+        .find('\n')
+        .map(|i| entry.whole.end + i + 1);
     let after = &text[entry.whole.end..end.unwrap_or(text.len())];
     let alone = text[line..entry.whole.start].trim().is_empty()
         && (after.trim().is_empty() || after.trim_start().starts_with("//"));
@@ -156,7 +163,13 @@ pub(super) fn remove(text: &str, entry: &Entry) -> (Range<usize>, String) {
 }
 
 /// Puts lines behind the last entry. `keeps_last`: whether the last entry stays.
-pub(super) fn append(text: &str, body: &Body, keeps_last: bool, lines: &[String], edits: &mut Edits) {
+pub(super) fn append(
+    text: &str,
+    body: &Body,
+    keeps_last: bool,
+    lines: &[String],
+    edits: &mut Edits,
+) {
     if lines.is_empty() {
         return;
     }
@@ -166,8 +179,15 @@ pub(super) fn append(text: &str, body: &Body, keeps_last: bool, lines: &[String]
     let line = text[..body.close].rfind('\n').map_or(0, |i| i + 1);
     let before = &text[line..body.close];
     let indent: String = before.chars().take_while(|c| c.is_whitespace()).collect();
-    let new: String =
-        lines.iter().map(|l| format!("{indent}    {}\n", l.replace('\n', &format!("\n{indent}    ")))).collect();
+    let new: String = lines
+        .iter()
+        .map(|l| {
+            format!(
+                "{indent}    {}\n",
+                l.replace('\n', &format!("\n{indent}    "))
+            )
+        })
+        .collect();
     if before.trim().is_empty() {
         edits.push((line..line, new));
     } else {

@@ -18,19 +18,39 @@ use std::path::{Component, Path, PathBuf};
 /// # Errors
 /// A file that exists (without `overwrite`), unknown parameters, values that cannot be read back, no permission; the
 /// old file is untouched then.
-pub fn write(experiment: &Experiment, defaults: &Params, path: &Path, overwrite: bool) -> Result<(), ExperimentError> {
+pub fn write(
+    experiment: &Experiment,
+    defaults: &Params,
+    path: &Path,
+    overwrite: bool,
+) -> Result<(), ExperimentError> {
     if !overwrite && path.exists() {
         return Err(exists(path));
     }
     let params = experiment.params_over(defaults)?;
     // A scene file is named from this folder, and looked up from it when the text is read back.
     let folder = path.parent().unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder).map_err(|why| FileError::Write { path: path.into(), why })?;
+    std::fs::create_dir_all(folder).map_err(|why| FileError::Write {
+        path: path.into(),
+        why,
+    })?;
     let unchanged: Vec<(String, String)> = defaults.texts().collect();
-    let list = params.texts().filter(|text| !unchanged.contains(text)).collect();
-    let wanted = Wanted { experiment, path, params: list, values: &params };
+    let list = params
+        .texts()
+        .filter(|text| !unchanged.contains(text))
+        .collect();
+    let wanted = Wanted {
+        experiment,
+        path,
+        params: list,
+        values: &params,
+    };
     let right = |text: &str| read_back(experiment, &params, defaults, path, text);
-    let edited = if overwrite { edited(&wanted, defaults).filter(|text| right(text).is_ok()) } else { None };
+    let edited = if overwrite {
+        edited(&wanted, defaults).filter(|text| right(text).is_ok())
+    } else {
+        None
+    };
     let text = edited.unwrap_or_else(|| fresh(&wanted));
     right(&text)?;
     let written = if overwrite {
@@ -58,16 +78,43 @@ pub fn resolved_text(
     resolved.camera = CameraChoice::Placed(*camera);
     resolved.sky = Some(scene.sky.into());
     resolved.environment = scene.environment.as_ref().map(|environment| {
-        let file = experiment.environment.as_ref().and_then(|e| e.value.file.clone());
+        let file = experiment
+            .environment
+            .as_ref()
+            .and_then(|e| e.value.file.clone());
         // Its intensity is in the sky's factor.
-        let value = EnvironmentChange { file, rotation: Some(environment.rotation), intensity: None };
-        Loc { value, at: At::default() }
+        let value = EnvironmentChange {
+            file,
+            rotation: Some(environment.rotation),
+            intensity: None,
+        };
+        Loc {
+            value,
+            at: At::default(),
+        }
     });
     // A change is for all lights of a name: only a name of one light can be written out.
-    let single = |name: &str| !name.is_empty() && scene.lights.iter().filter(|l| l.name == name).count() == 1;
+    let single = |name: &str| {
+        !name.is_empty() && scene.lights.iter().filter(|l| l.name == name).count() == 1
+    };
     let lights = scene.lights.iter().filter(|l| single(&l.name));
-    resolved.lights = lights.map(|l| (Loc { value: l.name.clone(), at: At::default() }, change_to(l))).collect();
-    let wanted = Wanted { experiment: &resolved, path, params: params.texts().collect(), values: &params };
+    resolved.lights = lights
+        .map(|l| {
+            (
+                Loc {
+                    value: l.name.clone(),
+                    at: At::default(),
+                },
+                change_to(l),
+            )
+        })
+        .collect();
+    let wanted = Wanted {
+        experiment: &resolved,
+        path,
+        params: params.texts().collect(),
+        values: &params,
+    };
     let text = fresh(&wanted);
     read_back(&resolved, &params, defaults, path, &text)?;
     Ok(text)
@@ -102,7 +149,8 @@ fn read_back(
             path.display()
         ))
     };
-    let first_message = |list: &[Diagnostic]| list.first().map_or(String::new(), |d| d.message.clone());
+    let first_message =
+        |list: &[Diagnostic]| list.first().map_or(String::new(), |d| d.message.clone());
     let found = Experiment::from_text(path, text).map_err(|e| wrong(first_message(&e)))?;
     let values = match found.params_over(defaults) {
         Ok(params) => (params.values, params.off),
@@ -111,9 +159,14 @@ fn read_back(
     };
     let maps = [
         ("lights", changes(&found) == changes(experiment)),
-        ("params", values == (params.values.clone(), params.off.clone())),
+        (
+            "params",
+            values == (params.values.clone(), params.off.clone()),
+        ),
     ];
-    let fields = FIELDS.iter().map(|f| (f.name, (f.same)(&found, experiment)));
+    let fields = FIELDS
+        .iter()
+        .map(|f| (f.name, (f.same)(&found, experiment)));
     match fields.chain(maps).find(|c| !c.1) {
         Some((field, _)) => Err(wrong(format!("`{field}` differs"))),
         None => Ok(()),
@@ -121,13 +174,22 @@ fn read_back(
 }
 
 fn changes(experiment: &Experiment) -> Vec<(&str, LightChange)> {
-    let mut list: Vec<_> = experiment.lights.iter().map(|(name, change)| (name.value.as_str(), *change)).collect();
+    let mut list: Vec<_> = experiment
+        .lights
+        .iter()
+        .map(|(name, change)| (name.value.as_str(), *change))
+        .collect();
     list.sort_by_key(|l| l.0);
     list
 }
 
 pub(super) fn same_environment(a: &Experiment, b: &Experiment) -> bool {
-    let change = |e: &Experiment| e.environment.as_ref().map(|e| e.value.clone()).unwrap_or_default();
+    let change = |e: &Experiment| {
+        e.environment
+            .as_ref()
+            .map(|e| e.value.clone())
+            .unwrap_or_default()
+    };
     let (a, b) = (change(a), change(b));
     let same_file = match (&a.file, &b.file) {
         (Some(a), Some(b)) => same_scene(a, b),
@@ -144,10 +206,22 @@ pub(super) fn same_scene(a: &str, b: &str) -> bool {
 /// How a scene is named in the file `path`: files of the project relative to its folder, everything else as it is.
 pub(super) fn scene_text(scene: &str, path: &Path) -> String {
     let relative = || {
-        let file = Path::new(scene).canonicalize().ok().filter(|p| p.is_file())?;
-        let folder = std::path::absolute(path).ok()?.parent()?.canonicalize().ok()?;
-        let project = folder.ancestors().find(|p| p.join("passes").is_dir() && p.join("shaders").is_dir())?;
-        file.starts_with(project).then(|| between(&folder, &file))?.to_str().map(String::from)
+        let file = Path::new(scene)
+            .canonicalize()
+            .ok()
+            .filter(|p| p.is_file())?;
+        let folder = std::path::absolute(path)
+            .ok()?
+            .parent()?
+            .canonicalize()
+            .ok()?;
+        let project = folder
+            .ancestors()
+            .find(|p| p.join("passes").is_dir() && p.join("shaders").is_dir())?;
+        file.starts_with(project)
+            .then(|| between(&folder, &file))?
+            .to_str()
+            .map(String::from)
     };
     relative().unwrap_or_else(|| scene.to_string())
 }
@@ -155,27 +229,58 @@ pub(super) fn scene_text(scene: &str, path: &Path) -> String {
 /// The environment as the file `path` says it: nothing where the experiment says nothing. A file outside the project has
 /// its whole path, so that it is found from everywhere.
 pub(super) fn environment_in(experiment: &Experiment, path: &Path) -> String {
-    let Some(Loc { value: change, .. }) = &experiment.environment else { return String::new() };
+    let Some(Loc { value: change, .. }) = &experiment.environment else {
+        return String::new();
+    };
     let file = change.file.as_ref().map(|file| {
         let text = scene_text(file, path);
-        let whole = Path::new(file).canonicalize().ok().filter(|_| text == *file);
-        whole.and_then(|p| p.to_str().map(String::from)).unwrap_or(text)
+        let whole = Path::new(file)
+            .canonicalize()
+            .ok()
+            .filter(|_| text == *file);
+        whole
+            .and_then(|p| p.to_str().map(String::from))
+            .unwrap_or(text)
     });
-    environment_text(&EnvironmentChange { file, ..change.clone() })
+    environment_text(&EnvironmentChange {
+        file,
+        ..change.clone()
+    })
 }
 
 /// An environment as RON.
 fn environment_text(change: &EnvironmentChange) -> String {
-    let file = change.file.as_ref().map(|file| format!("file: {}", quoted(file)));
-    let numbers = [("rotation", change.rotation), ("intensity", change.intensity)];
-    let numbers = numbers.iter().filter_map(|(n, v)| v.map(|v| format!("{n}: {v:?}")));
-    format!("({})", file.into_iter().chain(numbers).collect::<Vec<_>>().join(", "))
+    let file = change
+        .file
+        .as_ref()
+        .map(|file| format!("file: {}", quoted(file)));
+    let numbers = [
+        ("rotation", change.rotation),
+        ("intensity", change.intensity),
+    ];
+    let numbers = numbers
+        .iter()
+        .filter_map(|(n, v)| v.map(|v| format!("{n}: {v:?}")));
+    format!(
+        "({})",
+        file.into_iter()
+            .chain(numbers)
+            .collect::<Vec<_>>()
+            .join(", ")
+    )
 }
 
 /// The way from a folder to a file, both absolute.
 fn between(folder: &Path, file: &Path) -> PathBuf {
-    let common = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
-    let up = folder.components().skip(common).map(|_| Component::ParentDir);
+    let common = folder
+        .components()
+        .zip(file.components())
+        .take_while(|(a, b)| a == b)
+        .count();
+    let up = folder
+        .components()
+        .skip(common)
+        .map(|_| Component::ParentDir);
     up.chain(file.components().skip(common)).collect()
 }
 
@@ -208,16 +313,30 @@ pub(super) fn camera_text(camera: &CameraChoice) -> String {
 }
 
 fn light_text(change: &LightChange) -> String {
-    let vectors = [("color", change.color), ("direction", change.direction), ("position", change.position)];
+    let vectors = [
+        ("color", change.color),
+        ("direction", change.direction),
+        ("position", change.position),
+    ];
     let angles = [("inner", change.inner), ("outer", change.outer)];
-    let parts = vectors.iter().filter_map(|(n, v)| v.map(|v| format!("{n}: {}", vector(v))));
-    let parts = parts.chain(angles.iter().filter_map(|(n, a)| a.map(|a| format!("{n}: {a:?}"))));
+    let parts = vectors
+        .iter()
+        .filter_map(|(n, v)| v.map(|v| format!("{n}: {}", vector(v))));
+    let parts = parts.chain(
+        angles
+            .iter()
+            .filter_map(|(n, a)| a.map(|a| format!("{n}: {a:?}"))),
+    );
     format!("({})", parts.collect::<Vec<_>>().join(", "))
 }
 
 impl Wanted<'_> {
     fn lights(&self) -> Vec<(String, String)> {
-        self.experiment.lights.iter().map(|(name, change)| (name.value.clone(), light_text(change))).collect()
+        self.experiment
+            .lights
+            .iter()
+            .map(|(name, change)| (name.value.clone(), light_text(change)))
+            .collect()
     }
 }
 
@@ -226,14 +345,24 @@ fn fresh(wanted: &Wanted) -> String {
     for field in FIELDS {
         // Camera and size are always said, so that nobody has to look up what they are.
         if !(field.absent)(wanted.experiment) || ["camera", "size"].contains(&field.name) {
-            out += &format!("    {}: {},\n", field.name, field.text(wanted.experiment, wanted.path));
+            out += &format!(
+                "    {}: {},\n",
+                field.name,
+                field.text(wanted.experiment, wanted.path)
+            );
         }
     }
     let lights = wanted.lights();
     if !lights.is_empty() {
-        out += &format!("    {},\n", map_text("lights", &lights).replace('\n', "\n    "));
+        out += &format!(
+            "    {},\n",
+            map_text("lights", &lights).replace('\n', "\n    ")
+        );
     }
-    out += &format!("    {},\n)\n", map_text("params", &wanted.params).replace('\n', "\n    "));
+    out += &format!(
+        "    {},\n)\n",
+        map_text("params", &wanted.params).replace('\n', "\n    ")
+    );
     out
 }
 
@@ -241,7 +370,10 @@ fn map_text(name: &str, entries: &[(String, String)]) -> String {
     if entries.is_empty() {
         return format!("{name}: {{}}");
     }
-    let lines: Vec<String> = entries.iter().map(|(k, v)| format!("    {}: {v},\n", quoted(k))).collect();
+    let lines: Vec<String> = entries
+        .iter()
+        .map(|(k, v)| format!("    {}: {v},\n", quoted(k)))
+        .collect();
     format!("{name}: {{\n{}}}", lines.concat())
 }
 
@@ -272,19 +404,26 @@ fn edited(wanted: &Wanted, defaults: &Params) -> Option<String> {
         param.is_some_and(|p| p.parse(old).is_ok_and(|v| Ok(v) == p.parse(new)))
     };
     let same_light = |name: &str, _: &str, new: &str| {
-        old.lights.iter().any(|(n, change)| n.value == name && light_text(change) == new)
+        old.lights
+            .iter()
+            .any(|(n, change)| n.value == name && light_text(change) == new)
     };
     // What the author wrote out although it is the default stays, as long as it is true.
     let mut params = wanted.params.clone();
     for (name, text) in &old.params {
-        let param = defaults.index(&name.value).map(|i| (&defaults.list[i], &wanted.values.values[i]));
+        let param = defaults
+            .index(&name.value)
+            .map(|i| (&defaults.list[i], &wanted.values.values[i]));
         let is_true = param.is_some_and(|(p, now)| p.parse(text).as_ref() == Ok(now));
         if is_true && !params.iter().any(|p| p.0 == name.value) {
             params.push((name.value.clone(), text.clone()));
         }
     }
     let lights = wanted.lights();
-    let maps = [("lights", &lights, &same_light as &Same), ("params", &params, &same_param as &Same)];
+    let maps = [
+        ("lights", &lights, &same_light as &Same),
+        ("params", &params, &same_param as &Same),
+    ];
     for (name, entries, same) in maps {
         match body.entries.iter().find(|e| e.key == name) {
             Some(entry) => {
@@ -315,7 +454,11 @@ fn edit_map(text: &str, body: &Body, wanted: &[(String, String)], same: &Same, e
             Some(_) => {}
         }
     }
-    let added = wanted.iter().filter(|(name, _)| !body.entries.iter().any(|e| e.key == *name));
-    let lines: Vec<String> = added.map(|(name, value)| format!("{}: {value},", quoted(name))).collect();
+    let added = wanted
+        .iter()
+        .filter(|(name, _)| !body.entries.iter().any(|e| e.key == *name));
+    let lines: Vec<String> = added
+        .map(|(name, value)| format!("{}: {value},", quoted(name)))
+        .collect();
     spans::append(text, body, keeps_last, &lines, edits);
 }

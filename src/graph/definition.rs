@@ -2,8 +2,8 @@
 
 use super::expr::{Env, Ex};
 use super::file::{
-    Bind, BufferDecl, CheckDecl, CompareDecl, PassDecl, RefuseDecl, SceneNeeds, TableDecl, TextureDecl, ToolDecl,
-    ViewDecl,
+    Bind, BufferDecl, CheckDecl, CompareDecl, PassDecl, RefuseDecl, SceneNeeds, TableDecl,
+    TextureDecl, ToolDecl, ViewDecl,
 };
 use super::param::{Params, Value};
 use crate::diagnostics::{At, Loc, Sources};
@@ -91,7 +91,9 @@ impl Named {
         let value = self.expr.value.eval(env)?;
         let rounded = (value + 1e-9).floor();
         match self.whole {
-            true if rounded.abs() > f64::from(i32::MAX) => Err(format!("{value} does not fit 32 bits")),
+            true if rounded.abs() > f64::from(i32::MAX) => {
+                Err(format!("{value} does not fit 32 bits"))
+            }
             true => Ok(rounded),
             false => Ok(value),
         }
@@ -99,7 +101,11 @@ impl Named {
 
     /// A number as its value.
     pub(super) fn value(&self, number: f64) -> Value {
-        if self.whole { Value::Int(number as i64) } else { Value::Float(number) }
+        if self.whole {
+            Value::Int(number as i64)
+        } else {
+            Value::Float(number)
+        }
     }
 }
 
@@ -177,7 +183,10 @@ impl Graph {
 
     /// Names of all textures, then of all buffers.
     pub fn resource_names(&self) -> impl Iterator<Item = &str> {
-        self.textures.iter().map(|t| t.0.as_str()).chain(self.buffers.iter().map(|b| b.0.as_str()))
+        self.textures
+            .iter()
+            .map(|t| t.0.as_str())
+            .chain(self.buffers.iter().map(|b| b.0.as_str()))
     }
 
     /// The name of a resource, whichever frame's.
@@ -191,7 +200,11 @@ impl Graph {
     /// A resource for people.
     pub(super) fn title_of(&self, res: Res) -> String {
         let last = res != res.current();
-        format!("{}{}", self.name_of(res), if last { " (last frame)" } else { "" })
+        format!(
+            "{}{}",
+            self.name_of(res),
+            if last { " (last frame)" } else { "" }
+        )
     }
 
     /// The name of a pass.
@@ -210,8 +223,17 @@ impl Graph {
 
     /// Buffers of the checks that are made where these resources are wanted.
     pub fn checked_with(&self, wanted: &[String]) -> Vec<String> {
-        let made = |c: &&CheckDecl| c.with.as_ref().is_none_or(|texture| wanted.contains(&texture.value));
-        self.checks.iter().map(|c| &c.value).filter(made).map(|c| c.field.value.buffer.clone()).collect()
+        let made = |c: &&CheckDecl| {
+            c.with
+                .as_ref()
+                .is_none_or(|texture| wanted.contains(&texture.value))
+        };
+        self.checks
+            .iter()
+            .map(|c| &c.value)
+            .filter(made)
+            .map(|c| c.field.value.buffer.clone())
+            .collect()
     }
 
     /// What a tool is told.
@@ -230,8 +252,13 @@ impl Graph {
         match self.alias(own.map_or(name, |b| b.of.value.as_str())) {
             None => vec![(None, own.cloned())],
             Some(alias) => {
-                let narrowed = |case: &AliasCase| own.map_or(case.bind.clone(), |own| case.bind.narrowed(own));
-                alias.cases.iter().map(|case| (case.when.clone(), Some(narrowed(case)))).collect()
+                let narrowed =
+                    |case: &AliasCase| own.map_or(case.bind.clone(), |own| case.bind.narrowed(own));
+                alias
+                    .cases
+                    .iter()
+                    .map(|case| (case.when.clone(), Some(narrowed(case))))
+                    .collect()
             }
         }
     }
@@ -244,17 +271,36 @@ impl Graph {
 
     /// Expressions of what is needed of the scene.
     pub(super) fn scene_expressions(&self) -> impl Iterator<Item = &Ex> {
-        self.scene.iter().flat_map(|s| std::iter::once(&s.value.max_edge).chain(&s.value.when))
+        self.scene
+            .iter()
+            .flat_map(|s| std::iter::once(&s.value.max_edge).chain(&s.value.when))
     }
 
     /// All expressions.
     pub(super) fn expressions(&self) -> impl Iterator<Item = &Ex> {
         let textures = self.textures.iter().flat_map(|t| t.1.value.expressions());
-        let buffers = self.buffers.iter().flat_map(|b| b.1.value.size.value.expression());
-        let params = self.params.list.iter().flat_map(|p| p.when.iter().chain(&p.effective));
-        let values = self.values.iter().map(|v| &v.expr).chain(self.refuse.iter().map(|r| &r.when));
+        let buffers = self
+            .buffers
+            .iter()
+            .flat_map(|b| b.1.value.size.value.expression());
+        let params = self
+            .params
+            .list
+            .iter()
+            .flat_map(|p| p.when.iter().chain(&p.effective));
+        let values = self
+            .values
+            .iter()
+            .map(|v| &v.expr)
+            .chain(self.refuse.iter().map(|r| &r.when));
         let passes = self.passes.iter().flat_map(|p| p.value.expressions());
-        let resources = textures.chain(buffers).chain(params).chain(self.scene_expressions());
-        resources.chain(values).chain(self.alias_expressions()).chain(passes)
+        let resources = textures
+            .chain(buffers)
+            .chain(params)
+            .chain(self.scene_expressions());
+        resources
+            .chain(values)
+            .chain(self.alias_expressions())
+            .chain(passes)
     }
 }

@@ -39,24 +39,36 @@ pub fn idle(running: &Running<'_>, compiler: &ShaderCompiler) -> BTreeMap<String
     let silent: Vec<&Param> = params
         .list
         .iter()
-        .filter(|p| trial.refuses(p) || !read.contains(&p.name) && !trial.is_format(p) && !trial.changes(p))
+        .filter(|p| {
+            trial.refuses(p) || !read.contains(&p.name) && !trial.is_format(p) && !trial.changes(p)
+        })
         .collect();
     if silent.is_empty() {
         return BTreeMap::new();
     }
     let texts = Texts::new(running, compiler);
-    silent.into_iter().map(|p| (p.name.clone(), trial.reason(p, &texts))).collect()
+    silent
+        .into_iter()
+        .map(|p| (p.name.clone(), trial.reason(p, &texts)))
+        .collect()
 }
 
 /// Passes that a condition leaves out, by name, with the choices with which it would hold.
 pub fn resting(set: &Evaluated<'_>) -> BTreeMap<String, Vec<(String, String)>> {
     let (read, written) = (BTreeSet::new(), BTreeSet::new());
-    let running = Running { set, linked: &[], passes: &[], written };
+    let running = Running {
+        set,
+        linked: &[],
+        passes: &[],
+        written,
+    };
     let trial = Trial::new(&running, &read);
     let passes = set.graph.passes.iter().map(|pass| &pass.value);
     passes
         .filter_map(|pass| {
-            let failing = pass.conditions().find(|when| when.value.eval(&trial.env) == Ok(0.0))?;
+            let failing = pass
+                .conditions()
+                .find(|when| when.value.eval(&trial.env) == Ok(0.0))?;
             Some((pass.name.value.clone(), trial.needs_of(failing)))
         })
         .collect()
@@ -75,8 +87,13 @@ fn read_by_shaders(running: &Running<'_>) -> BTreeSet<String> {
     let mut texts: BTreeMap<&str, &str> = BTreeMap::new();
     for link in running.passes.iter().filter_map(|p| running.linked.get(*p)) {
         for bound in &link.bound {
-            let block = |t: &Target| matches!(t, Target::External(e) if EXTERNALS[*e].name == "params");
-            let Some(layout) = bound.layout.as_ref().filter(|_| bound.cases.iter().any(|c| block(&c.target))) else {
+            let block =
+                |t: &Target| matches!(t, Target::External(e) if EXTERNALS[*e].name == "params");
+            let Some(layout) = bound
+                .layout
+                .as_ref()
+                .filter(|_| bound.cases.iter().any(|c| block(&c.target)))
+            else {
                 continue;
             };
             for member in layout.members() {
@@ -89,13 +106,23 @@ fn read_by_shaders(running: &Running<'_>) -> BTreeSet<String> {
                     let mut texts = stages.flat_map(|s| s.texts.values());
                     texts.any(|text| has_word(text, &word))
                 };
-                if bound.reads.as_ref().map_or_else(in_text, |ranges| ranges.iter().any(inside)) {
+                if bound
+                    .reads
+                    .as_ref()
+                    .map_or_else(in_text, |ranges| ranges.iter().any(inside))
+                {
                     names.insert(member.name.clone());
                 }
             }
         }
         for stage in &link.stages {
-            texts.extend(stage.texts.iter().filter(|t| t.0 != "params.glsl").map(|(f, t)| (f.as_str(), t.as_str())));
+            texts.extend(
+                stage
+                    .texts
+                    .iter()
+                    .filter(|t| t.0 != "params.glsl")
+                    .map(|(f, t)| (f.as_str(), t.as_str())),
+            );
         }
     }
     for param in &running.set.graph.params.list {
@@ -126,30 +153,69 @@ impl<'a> Trial<'a> {
         for name in ["index", "mip"] {
             env.insert(name.into(), Var::Number(0.0));
         }
-        let mut expressions: Vec<&Ex> = graph.passes.iter().flat_map(|p| p.value.conditions()).collect();
-        expressions.extend(running.passes.iter().flat_map(|p| graph.passes[*p].value.expressions()));
-        let textures = graph.textures.iter().filter(|t| running.written.contains(t.0.as_str()));
+        let mut expressions: Vec<&Ex> = graph
+            .passes
+            .iter()
+            .flat_map(|p| p.value.conditions())
+            .collect();
+        expressions.extend(
+            running
+                .passes
+                .iter()
+                .flat_map(|p| graph.passes[*p].value.expressions()),
+        );
+        let textures = graph
+            .textures
+            .iter()
+            .filter(|t| running.written.contains(t.0.as_str()));
         expressions.extend(textures.flat_map(|(_, t)| t.value.expressions()));
-        let buffers = graph.buffers.iter().filter(|b| running.written.contains(b.0.as_str()));
+        let buffers = graph
+            .buffers
+            .iter()
+            .filter(|b| running.written.contains(b.0.as_str()));
         expressions.extend(buffers.filter_map(|(_, b)| b.value.size.value.expression()));
         expressions.extend(graph.alias_expressions());
-        expressions.extend(graph.values.iter().filter(|v| read.contains(&v.name)).map(|v| &v.expr));
+        expressions.extend(
+            graph
+                .values
+                .iter()
+                .filter(|v| read.contains(&v.name))
+                .map(|v| &v.expr),
+        );
         expressions.extend(graph.scene_expressions());
-        Trial { running, params, read, env, expressions }
+        Trial {
+            running,
+            params,
+            read,
+            env,
+            expressions,
+        }
     }
 
     fn value(&self, param: &Param) -> Value {
-        self.params.get(&param.name).unwrap_or(&param.default).clone()
+        self.params
+            .get(&param.name)
+            .unwrap_or(&param.default)
+            .clone()
     }
 
     /// Whether its declaration says that it does not count now.
     fn refuses(&self, param: &Param) -> bool {
-        param.when.as_ref().is_some_and(|when| when.value.eval(&self.env) == Ok(0.0))
+        param
+            .when
+            .as_ref()
+            .is_some_and(|when| when.value.eval(&self.env) == Ok(0.0))
     }
 
     /// Whether it is the format of a texture that is made.
     fn is_format(&self, param: &Param) -> bool {
-        let mut made = self.running.set.graph.textures.iter().filter(|t| self.running.written.contains(t.0.as_str()));
+        let mut made = self
+            .running
+            .set
+            .graph
+            .textures
+            .iter()
+            .filter(|t| self.running.written.contains(t.0.as_str()));
         made.any(|t| t.1.value.format.value == param.name)
     }
 
@@ -163,37 +229,63 @@ impl<'a> Trial<'a> {
         let counts = |ex: &&&Ex| ex.value.variables().iter().any(|v| moved.contains(v));
         let named: Vec<&&Ex> = expressions.iter().filter(counts).collect();
         let outcome = |env: &Env| -> Vec<Option<u64>> {
-            named.iter().map(|ex| ex.value.eval(env).ok().map(f64::to_bits)).collect()
+            named
+                .iter()
+                .map(|ex| ex.value.eval(env).ok().map(f64::to_bits))
+                .collect()
         };
         let now = outcome(env);
         !named.is_empty()
-            && others(param, &self.value(param)).iter().any(|other| outcome(&self.with(env, param, other)) != now)
+            && others(param, &self.value(param))
+                .iter()
+                .any(|other| outcome(&self.with(env, param, other)) != now)
     }
 
     /// Why it changes nothing, in words.
     fn reason(&self, param: &Param, texts: &Texts) -> Reason {
         if let Some(when) = param.when.as_ref().filter(|_| self.refuses(param)) {
-            return Reason { text: format!("where {}", when.value.text), needs: self.needs_of(when) };
+            return Reason {
+                text: format!("where {}", when.value.text),
+                needs: self.needs_of(when),
+            };
         }
         let files = texts.naming(param, &self.depending_on(param));
         let mut clauses: Vec<String> = Vec::new();
         let mut needs = Vec::new();
         // A module that no running pass includes makes no difference.
-        let modules = self.params.list.iter().filter(|m| m.is_module() && m.name != param.name);
+        let modules = self
+            .params
+            .list
+            .iter()
+            .filter(|m| m.is_module() && m.name != param.name);
         for module in modules.filter(|m| self.read.contains(&m.name)) {
-            let naming = |o: &&OptionFiles| !o.is_chosen && o.module == module.name && !o.files.is_disjoint(&files);
-            let names: Vec<&str> = texts.options.iter().filter(naming).map(|o| o.option.as_str()).collect();
+            let naming = |o: &&OptionFiles| {
+                !o.is_chosen && o.module == module.name && !o.files.is_disjoint(&files)
+            };
+            let names: Vec<&str> = texts
+                .options
+                .iter()
+                .filter(naming)
+                .map(|o| o.option.as_str())
+                .collect();
             if names.is_empty() {
                 continue;
             }
             clauses.push(format!("{} is {}", module.name, names.join(" or ")));
-            needs.extend(names.iter().map(|o| (module.name.clone(), (*o).to_string())));
+            needs.extend(
+                names
+                    .iter()
+                    .map(|o| (module.name.clone(), (*o).to_string())),
+            );
         }
         if clauses.is_empty() {
             (clauses, needs) = self.switches(param);
         }
         if clauses.is_empty() {
-            let resting = texts.resting.iter().filter(|(_, used)| !used.is_disjoint(&files));
+            let resting = texts
+                .resting
+                .iter()
+                .filter(|(_, used)| !used.is_disjoint(&files));
             clauses = resting.map(|(condition, _)| condition.clone()).collect();
             clauses.dedup();
         }
@@ -207,13 +299,22 @@ impl<'a> Trial<'a> {
 
     /// Choices and flags with which a condition holds.
     fn needs_of(&self, condition: &Ex) -> Vec<(String, String)> {
-        let switches = self.params.list.iter().filter(|s| matches!(s.kind, Kind::Bool | Kind::Choice(_)));
+        let switches = self
+            .params
+            .list
+            .iter()
+            .filter(|s| matches!(s.kind, Kind::Bool | Kind::Choice(_)));
         let holds = |switch: &Param, value: &Value| {
-            condition.value.eval(&self.with(&self.env, switch, value)).is_ok_and(|v| v != 0.0)
+            condition
+                .value
+                .eval(&self.with(&self.env, switch, value))
+                .is_ok_and(|v| v != 0.0)
         };
         let mut needs = Vec::new();
         for switch in switches {
-            let values = others(switch, &self.value(switch)).into_iter().filter(|v| holds(switch, v));
+            let values = others(switch, &self.value(switch))
+                .into_iter()
+                .filter(|v| holds(switch, v));
             needs.extend(values.map(|v| (switch.name.clone(), v.to_string())));
         }
         needs
@@ -223,18 +324,27 @@ impl<'a> Trial<'a> {
     fn switches(&self, param: &Param) -> (Vec<String>, Vec<(String, String)>) {
         let moved = self.depending_on(param);
         let all: Vec<&Ex> = self.running.set.graph.expressions().collect();
-        let naming: Vec<&Ex> =
-            all.into_iter().filter(|ex| ex.value.variables().iter().any(|v| moved.contains(v))).collect();
+        let naming: Vec<&Ex> = all
+            .into_iter()
+            .filter(|ex| ex.value.variables().iter().any(|v| moved.contains(v)))
+            .collect();
         let (mut clauses, mut needs) = (Vec::new(), Vec::new());
         for switch in self.params.list.iter().filter(|s| s.name != param.name) {
             let deciding = self.depending_on(switch);
             let is_switch = matches!(switch.kind, Kind::Bool | Kind::Choice(_));
-            let named = naming.iter().any(|ex| ex.value.variables().iter().any(|v| deciding.contains(v)));
+            let named = naming
+                .iter()
+                .any(|ex| ex.value.variables().iter().any(|v| deciding.contains(v)));
             if !is_switch || !named {
                 continue;
             }
-            let works = |value: &Value| self.changes_in(param, &self.with(&self.env, switch, value), &naming);
-            let values: Vec<Value> = others(switch, &self.value(switch)).into_iter().filter(works).collect();
+            let works = |value: &Value| {
+                self.changes_in(param, &self.with(&self.env, switch, value), &naming)
+            };
+            let values: Vec<Value> = others(switch, &self.value(switch))
+                .into_iter()
+                .filter(works)
+                .collect();
             if !values.is_empty() {
                 let names: Vec<String> = values.iter().map(ToString::to_string).collect();
                 clauses.push(format!("{} is {}", switch.name, names.join(" or ")));
@@ -248,7 +358,13 @@ impl<'a> Trial<'a> {
     fn depending_on(&self, param: &Param) -> Vec<String> {
         let mut moved = param.variables();
         for value in &self.running.set.graph.values {
-            if value.expr.value.variables().iter().any(|v| moved.contains(v)) {
+            if value
+                .expr
+                .value
+                .variables()
+                .iter()
+                .any(|v| moved.contains(v))
+            {
                 moved.push(value.name.clone());
             }
         }
@@ -260,7 +376,14 @@ impl<'a> Trial<'a> {
         let mut env = env.clone();
         param.put(value, &mut env);
         let moved = self.depending_on(param);
-        for value in self.running.set.graph.values.iter().filter(|v| moved.contains(&v.name)) {
+        for value in self
+            .running
+            .set
+            .graph
+            .values
+            .iter()
+            .filter(|v| moved.contains(&v.name))
+        {
             if let Ok(number) = value.number(&env) {
                 env.insert(value.name.clone(), Var::Number(number));
             }
@@ -278,10 +401,20 @@ fn others(param: &Param, now: &Value) -> Vec<Value> {
     };
     let mut list: Vec<Value> = match now {
         Value::Bool(v) => vec![Value::Bool(!v)],
-        Value::Int(v) => numbers(*v as f64).iter().map(|x| Value::Int(x.round() as i64)).collect(),
+        Value::Int(v) => numbers(*v as f64)
+            .iter()
+            .map(|x| Value::Int(x.round() as i64))
+            .collect(),
         Value::Float(v) => numbers(*v).iter().map(|x| Value::Float(*x)).collect(),
-        Value::Vector(v) => (0..5).map(|i| Value::Vector(v.iter().map(|x| numbers(*x)[i]).collect())).collect(),
-        Value::Choice(_) => param.kind.options().iter().map(|o| Value::Choice(o.clone())).collect(),
+        Value::Vector(v) => (0..5)
+            .map(|i| Value::Vector(v.iter().map(|x| numbers(*x)[i]).collect()))
+            .collect(),
+        Value::Choice(_) => param
+            .kind
+            .options()
+            .iter()
+            .map(|o| Value::Choice(o.clone()))
+            .collect(),
     };
     list.extend(param.plain.clone());
     list.push(param.default.clone());
@@ -312,7 +445,12 @@ struct Texts {
 
 impl Texts {
     fn new(running: &Running<'_>, compiler: &ShaderCompiler) -> Texts {
-        let Evaluated { graph, params, ref env, .. } = *running.set;
+        let Evaluated {
+            graph,
+            params,
+            ref env,
+            ..
+        } = *running.set;
         let made = generated(graph, params);
         let mut files = BTreeMap::new();
         let mut take = |file: &str| -> BTreeSet<String> {
@@ -328,17 +466,39 @@ impl Texts {
             for (option, file) in param.kind.options().iter().zip(&param.files) {
                 let is_chosen = chosen == Some(&Value::Choice(option.clone()));
                 let (module, option) = (param.name.clone(), option.clone());
-                options.push(OptionFiles { module, option, is_chosen, files: take(file) });
+                options.push(OptionFiles {
+                    module,
+                    option,
+                    is_chosen,
+                    files: take(file),
+                });
             }
         }
         let mut resting = Vec::new();
-        for (number, pass) in graph.passes.iter().enumerate().filter(|(i, _)| !running.passes.contains(i)) {
+        for (number, pass) in graph
+            .passes
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| !running.passes.contains(i))
+        {
             let fails = |when: &&Ex| when.value.eval(env) == Ok(0.0);
-            let Some(condition) = pass.value.conditions().find(fails) else { continue };
-            let used = graph.passes[number].value.shaders.0.iter().flat_map(|s| take(&s.value)).collect();
+            let Some(condition) = pass.value.conditions().find(fails) else {
+                continue;
+            };
+            let used = graph.passes[number]
+                .value
+                .shaders
+                .0
+                .iter()
+                .flat_map(|s| take(&s.value))
+                .collect();
             resting.push((condition.value.text.clone(), used));
         }
-        Texts { files, options, resting }
+        Texts {
+            files,
+            options,
+            resting,
+        }
     }
 
     /// Files that name a parameter, or a value that depends on it.
@@ -346,9 +506,14 @@ impl Texts {
         if param.is_module() {
             return BTreeSet::from([module_include(&param.name)]);
         }
-        let words: Vec<String> =
-            std::iter::once(param.in_shaders()).chain(moved.iter().map(|v| format!("params.{v}"))).collect();
+        let words: Vec<String> = std::iter::once(param.in_shaders())
+            .chain(moved.iter().map(|v| format!("params.{v}")))
+            .collect();
         let named = |text: &str| words.iter().any(|w| has_word(text, w));
-        self.files.iter().filter(|(_, text)| named(text)).map(|(file, _)| file.clone()).collect()
+        self.files
+            .iter()
+            .filter(|(_, text)| named(text))
+            .map(|(file, _)| file.clone())
+            .collect()
     }
 }

@@ -34,7 +34,8 @@ impl<'g> Evaluated<'g> {
                 }
                 Err(why) => {
                     if !lost.iter().any(|l| named.reads(&l.name)) {
-                        let message = format!("value '{}', '{}': {why}", named.name, named.expr.value.text);
+                        let message =
+                            format!("value '{}', '{}': {why}", named.name, named.expr.value.text);
                         errors.push(graph.sources.error(named.expr.at, message));
                     }
                     lost.push(named);
@@ -42,6 +43,12 @@ impl<'g> Evaluated<'g> {
                 }
             }
         }
-        Evaluated { graph, params, env, values, errors }
+        Evaluated {
+            graph,
+            params,
+            env,
+            values,
+            errors,
+        }
     }
 }

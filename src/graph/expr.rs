@@ -39,9 +39,17 @@ static ENGINE: LazyLock<Engine> = LazyLock::new(|| {
     ArithmeticPackage::new().register_into_engine(&mut engine);
     LogicPackage::new().register_into_engine(&mut engine);
     BasicMathPackage::new().register_into_engine(&mut engine);
-    engine.set_max_operations(10_000).set_max_expr_depths(64).set_max_string_size(256);
-    engine.register_fn("log2", f64::log2).register_fn("exp2", f64::exp2).register_fn("radians", f64::to_radians);
-    engine.register_fn("log2", |a: i64| (a as f64).log2()).register_fn("exp2", |a: i64| (a as f64).exp2());
+    engine
+        .set_max_operations(10_000)
+        .set_max_expr_depths(64)
+        .set_max_string_size(256);
+    engine
+        .register_fn("log2", f64::log2)
+        .register_fn("exp2", f64::exp2)
+        .register_fn("radians", f64::to_radians);
+    engine
+        .register_fn("log2", |a: i64| (a as f64).log2())
+        .register_fn("exp2", |a: i64| (a as f64).exp2());
     // Literals without a point are integers, which the package's functions do not take.
     type Function = (&'static str, fn(f64) -> f64);
     let functions: [Function; 8] = [
@@ -60,13 +68,28 @@ static ENGINE: LazyLock<Engine> = LazyLock::new(|| {
     }
     for_numbers(&mut engine, "min", f64::min);
     for_numbers(&mut engine, "max", f64::max);
-    engine.register_fn("select", |c: bool, a: Dynamic, b: Dynamic| if c { a } else { b });
+    engine.register_fn(
+        "select",
+        |c: bool, a: Dynamic, b: Dynamic| if c { a } else { b },
+    );
     // Rhai takes values of different kinds for unequal; that would leave a pass out without a word.
     engine.set_fast_operators(false);
-    incomparable::<bool, i64>(&mut engine, "true or false is no number: write `flag` or `!flag`");
-    incomparable::<bool, f64>(&mut engine, "true or false is no number: write `flag` or `!flag`");
-    incomparable::<f64, ImmutableString>(&mut engine, "options stand without quotes: choice == option");
-    incomparable::<i64, ImmutableString>(&mut engine, "options stand without quotes: choice == option");
+    incomparable::<bool, i64>(
+        &mut engine,
+        "true or false is no number: write `flag` or `!flag`",
+    );
+    incomparable::<bool, f64>(
+        &mut engine,
+        "true or false is no number: write `flag` or `!flag`",
+    );
+    incomparable::<f64, ImmutableString>(
+        &mut engine,
+        "options stand without quotes: choice == option",
+    );
+    incomparable::<i64, ImmutableString>(
+        &mut engine,
+        "options stand without quotes: choice == option",
+    );
     incomparable::<bool, ImmutableString>(&mut engine, "true and false stand without quotes");
     engine
 });
@@ -79,10 +102,19 @@ fn for_numbers(engine: &mut Engine, name: &str, f: fn(f64, f64) -> f64) {
 }
 
 /// Makes `==` and `!=` between two kinds an error.
-fn incomparable<A: rhai::Variant + Clone, B: rhai::Variant + Clone>(engine: &mut Engine, why: &'static str) {
+fn incomparable<A: rhai::Variant + Clone, B: rhai::Variant + Clone>(
+    engine: &mut Engine,
+    why: &'static str,
+) {
     for operator in ["==", "!="] {
-        engine.register_fn(operator, move |_: A, _: B| -> Result<bool, Box<EvalAltResult>> { Err(why.into()) });
-        engine.register_fn(operator, move |_: B, _: A| -> Result<bool, Box<EvalAltResult>> { Err(why.into()) });
+        engine.register_fn(
+            operator,
+            move |_: A, _: B| -> Result<bool, Box<EvalAltResult>> { Err(why.into()) },
+        );
+        engine.register_fn(
+            operator,
+            move |_: B, _: A| -> Result<bool, Box<EvalAltResult>> { Err(why.into()) },
+        );
     }
 }
 
@@ -103,7 +135,11 @@ impl Expr {
                 true
             });
         }
-        Expr { text: text.to_string(), variables, compiled }
+        Expr {
+            text: text.to_string(),
+            variables,
+            compiled,
+        }
     }
 
     /// Why the text is no expression, if it is none.
@@ -135,7 +171,9 @@ impl Expr {
                 None => return Err(format!("'{name}' has no value here")),
             }
         }
-        let value: Dynamic = ENGINE.eval_ast_with_scope(&mut scope, ast).map_err(|e| e.to_string())?;
+        let value: Dynamic = ENGINE
+            .eval_ast_with_scope(&mut scope, ast)
+            .map_err(|e| e.to_string())?;
         let number = if let Ok(v) = value.as_float() {
             v
         } else if let Ok(v) = value.as_int() {
@@ -143,9 +181,16 @@ impl Expr {
         } else if let Ok(v) = value.as_bool() {
             f64::from(u8::from(v))
         } else {
-            return Err(format!("the result is a {}, not a number", value.type_name()));
+            return Err(format!(
+                "the result is a {}, not a number",
+                value.type_name()
+            ));
         };
-        if number.is_finite() { Ok(number) } else { Err(format!("the result is {number}")) }
+        if number.is_finite() {
+            Ok(number)
+        } else {
+            Err(format!("the result is {number}"))
+        }
     }
 }
 
@@ -187,7 +232,9 @@ mod tests {
             ("n".into(), Var::Number(128.0)),
             ("flag".into(), Var::Bool(true)),
         ]);
-        Expr::new(text).eval(&env).unwrap_or_else(|e| panic!("{text}: {e}"))
+        Expr::new(text)
+            .eval(&env)
+            .unwrap_or_else(|e| panic!("{text}: {e}"))
     }
 
     #[test]
@@ -209,11 +256,29 @@ mod tests {
     fn mistakes_are_told() {
         assert!(Expr::new("2 +* ").mistake().is_some());
         assert!(Expr::new("while true {}").mistake().is_some());
-        assert!(Expr::new("unknown + 1").eval(&Env::new()).unwrap_err().contains("'unknown' has no value"));
+        assert!(
+            Expr::new("unknown + 1")
+                .eval(&Env::new())
+                .unwrap_err()
+                .contains("'unknown' has no value")
+        );
         assert_eq!(Expr::new("a && (b || c > 1)").variables(), ["a", "b", "c"]);
         assert!(Expr::new("1.0 / 0.0").eval(&Env::new()).is_err());
-        let env = Env::from([("flag".into(), Var::Bool(true)), ("n".into(), Var::Number(2.0))]);
-        assert!(Expr::new("flag == 1").eval(&env).unwrap_err().contains("write `flag`"));
-        assert!(Expr::new("n != `exact`").eval(&env).unwrap_err().contains("without quotes"));
+        let env = Env::from([
+            ("flag".into(), Var::Bool(true)),
+            ("n".into(), Var::Number(2.0)),
+        ]);
+        assert!(
+            Expr::new("flag == 1")
+                .eval(&env)
+                .unwrap_err()
+                .contains("write `flag`")
+        );
+        assert!(
+            Expr::new("n != `exact`")
+                .eval(&env)
+                .unwrap_err()
+                .contains("without quotes")
+        );
     }
 }

@@ -190,23 +190,41 @@ pub(super) fn mismatch(resource: &str, declared: &Layout) -> Option<(String, Opt
         "emitters" => (true, EmitterBlock::layout()),
         _ => return None,
     };
-    let declared = if elements { element(declared)? } else { (declared, None) };
+    let declared = if elements {
+        element(declared)?
+    } else {
+        (declared, None)
+    };
     if let Some(stride) = declared.1.filter(|stride| *stride as usize != bytes) {
-        return Some((format!("an element of '{resource}' has {bytes} bytes, and the shader declares {stride}"), None));
+        return Some((
+            format!(
+                "an element of '{resource}' has {bytes} bytes, and the shader declares {stride}"
+            ),
+            None,
+        ));
     }
     for member in declared.0.members() {
         let end = member.offset.saturating_add(member.layout.bytes());
         let message = match members.iter().find(|m| m.name == member.name) {
             Some(known) if known.layout != member.layout => {
-                format!("is of type {}, and the shader declares {}", known.layout, member.layout)
+                format!(
+                    "is of type {}, and the shader declares {}",
+                    known.layout, member.layout
+                )
             }
             Some(known) if known.offset != member.offset => {
-                format!("lies at byte {}, and the shader declares it at {}", known.offset, member.offset)
+                format!(
+                    "lies at byte {}, and the shader declares it at {}",
+                    known.offset, member.offset
+                )
             }
             None if end as usize > bytes => format!("ends at byte {end}, and there are {bytes}"),
             _ => continue,
         };
-        return Some((format!("'{}' of '{resource}' {message}", member.name), Some(member.name.clone())));
+        return Some((
+            format!("'{}' of '{resource}' {message}", member.name),
+            Some(member.name.clone()),
+        ));
     }
     None
 }
@@ -215,7 +233,9 @@ pub(super) fn mismatch(resource: &str, declared: &Layout) -> Option<(String, Opt
 fn element(block: &Layout) -> Option<(&Layout, Option<u32>)> {
     match block.members() {
         [.., list] => match &list.layout {
-            Layout::Array { of, stride, .. } if !of.members().is_empty() => Some((&**of, Some(*stride))),
+            Layout::Array { of, stride, .. } if !of.members().is_empty() => {
+                Some((&**of, Some(*stride)))
+            }
             _ => None,
         },
         _ => None,

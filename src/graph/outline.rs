@@ -91,27 +91,44 @@ pub fn outline(graph: &Graph, params: &Params, plan: &Plan) -> Outline {
             writes: uses().filter(|u| u.write).map(name).collect(),
         }
     });
-    let textures = plan.textures.iter().enumerate().filter(|(_, p)| !p.usage.is_empty()).map(|(t, p)| TextureOutline {
-        name: graph.textures[t].0.clone(),
-        extent: p.extent,
-        format: p.format.name,
-        mips: p.mips,
-        layers: p.layers,
-        transient: p.transient,
-        history: p.history,
-        bytes: p.bytes(),
-    });
-    let buffers = plan.buffers.iter().zip(&graph.buffers).filter(|(p, _)| p.used).map(|(p, b)| BufferOutline {
-        name: b.0.clone(),
-        transient: p.transient,
-        history: p.history,
-        bytes: p.bytes(),
-    });
-    let left_out = plan.dropped.iter().map(|(pass, why)| (graph.pass_name(*pass).to_string(), why.clone()));
+    let textures = plan
+        .textures
+        .iter()
+        .enumerate()
+        .filter(|(_, p)| !p.usage.is_empty())
+        .map(|(t, p)| TextureOutline {
+            name: graph.textures[t].0.clone(),
+            extent: p.extent,
+            format: p.format.name,
+            mips: p.mips,
+            layers: p.layers,
+            transient: p.transient,
+            history: p.history,
+            bytes: p.bytes(),
+        });
+    let buffers = plan
+        .buffers
+        .iter()
+        .zip(&graph.buffers)
+        .filter(|(p, _)| p.used)
+        .map(|(p, b)| BufferOutline {
+            name: b.0.clone(),
+            transient: p.transient,
+            history: p.history,
+            bytes: p.bytes(),
+        });
+    let left_out = plan
+        .dropped
+        .iter()
+        .map(|(pass, why)| (graph.pass_name(*pass).to_string(), why.clone()));
     Outline {
         schema: SCHEMA,
         graph: graph.name.clone(),
-        params: params.names().map(String::from).zip(params.values.iter().cloned()).collect(),
+        params: params
+            .names()
+            .map(String::from)
+            .zip(params.values.iter().cloned())
+            .collect(),
         passes: passes.collect(),
         textures: textures.collect(),
         buffers: buffers.collect(),

@@ -12,8 +12,15 @@ use std::fmt::Write;
 /// A screen: for each pass that runs, its stage, shader files and results; then memory, and the names of the others.
 pub fn summary(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> String {
     let graph = set.graph;
-    let (ran, all, params) = (plan.passes().len(), graph.passes.len(), graph.params.offered().count());
-    let mut out = format!("graph {}: {ran} of {all} passes run, {params} parameters", graph.name);
+    let (ran, all, params) = (
+        plan.passes().len(),
+        graph.passes.len(),
+        graph.params.offered().count(),
+    );
+    let mut out = format!(
+        "graph {}: {ran} of {all} passes run, {params} parameters",
+        graph.name
+    );
     if plan.convergence.fresh > 1 {
         let _ = write!(out, "; converges in {} frames", plan.convergence.fresh);
     }
@@ -22,17 +29,36 @@ pub fn summary(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> String {
     let width = |column: usize| rows.iter().map(|r| r[column].len()).max().unwrap_or(0);
     let widths = [0, 1, 2].map(width);
     for [stage, pass, shaders, results] in &rows {
-        let line = format!("{stage:<0$}  {pass:<1$}  {shaders:<2$}  {results}", widths[0], widths[1], widths[2]);
+        let line = format!(
+            "{stage:<0$}  {pass:<1$}  {shaders:<2$}  {results}",
+            widths[0], widths[1], widths[2]
+        );
         let _ = writeln!(out, "{}", line.trim_end());
     }
     out.push('\n');
     for settling in &plan.settling {
-        let mut passes: Vec<&str> = settling.steps.iter().map(|i| graph.pass_name(plan.steps[*i].pass)).collect();
+        let mut passes: Vec<&str> = settling
+            .steps
+            .iter()
+            .map(|i| graph.pass_name(plan.steps[*i].pass))
+            .collect();
         passes.dedup();
-        let _ = writeln!(out, "after {} still frames rest: {}", settling.frames, passes.join(", "));
+        let _ = writeln!(
+            out,
+            "after {} still frames rest: {}",
+            settling.frames,
+            passes.join(", ")
+        );
     }
-    let modules = set.params.modules().chain(graph.modules.iter().map(|(name, file)| (name.as_str(), file.as_str())));
-    let mut modules: Vec<String> = modules.map(|(name, file)| format!("{name} {file}")).collect();
+    let modules = set.params.modules().chain(
+        graph
+            .modules
+            .iter()
+            .map(|(name, file)| (name.as_str(), file.as_str())),
+    );
+    let mut modules: Vec<String> = modules
+        .map(|(name, file)| format!("{name} {file}"))
+        .collect();
     modules.sort();
     if !modules.is_empty() {
         let _ = writeln!(out, "modules: {}", modules.join(", "));
@@ -42,16 +68,34 @@ pub fn summary(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> String {
     if !automatic.is_empty() {
         let _ = writeln!(out, "automatic: {}", automatic.join(", "));
     }
-    let mut memory: Vec<(&str, u64)> = plan.made().map(|res| (graph.name_of(res), plan.bytes_of(res))).collect();
+    let mut memory: Vec<(&str, u64)> = plan
+        .made()
+        .map(|res| (graph.name_of(res), plan.bytes_of(res)))
+        .collect();
     memory.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
     let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
     let total = mib(memory.iter().map(|(_, bytes)| bytes).sum::<u64>() - shared(plan).1);
-    let largest: Vec<String> =
-        memory.iter().take(6).map(|(name, bytes)| format!("{name} {:.1}", mib(*bytes))).collect();
-    let _ = writeln!(out, "memory: {total:.1} MiB; the largest: {}", largest.join(", "));
+    let largest: Vec<String> = memory
+        .iter()
+        .take(6)
+        .map(|(name, bytes)| format!("{name} {:.1}", mib(*bytes)))
+        .collect();
+    let _ = writeln!(
+        out,
+        "memory: {total:.1} MiB; the largest: {}",
+        largest.join(", ")
+    );
     if !plan.dropped.is_empty() {
-        let names: Vec<&str> = plan.dropped.iter().map(|(pass, _)| graph.pass_name(*pass)).collect();
-        let _ = writeln!(out, "left out (--barriers prints why): {}", names.join(", "));
+        let names: Vec<&str> = plan
+            .dropped
+            .iter()
+            .map(|(pass, _)| graph.pass_name(*pass))
+            .collect();
+        let _ = writeln!(
+            out,
+            "left out (--barriers prints why): {}",
+            names.join(", ")
+        );
     }
     out
 }
@@ -68,9 +112,18 @@ fn rows(graph: &Graph, linked: &[Linked], plan: &Plan) -> Vec<[String; 4]> {
         if is_new {
             (stage, clears) = (pass.stage(), None);
         }
-        let stage = if is_new { stage.to_owned() } else { String::new() };
+        let stage = if is_new {
+            stage.to_owned()
+        } else {
+            String::new()
+        };
         let names = |wanted: fn(&Use) -> bool| {
-            let names: BTreeSet<&str> = first.uses.iter().filter(|u| wanted(u)).map(|u| graph.name_of(u.res)).collect();
+            let names: BTreeSet<&str> = first
+                .uses
+                .iter()
+                .filter(|u| wanted(u))
+                .map(|u| graph.name_of(u.res))
+                .collect();
             names.into_iter().collect::<Vec<_>>().join(" ")
         };
         let (reads, results) = (names(|u| u.read && !u.write), names(|u| u.write));
@@ -79,21 +132,43 @@ fn rows(graph: &Graph, linked: &[Linked], plan: &Plan) -> Vec<[String; 4]> {
                 Some(row) => rows[row][3] += &format!(" {results}"),
                 None => {
                     clears = Some(rows.len());
-                    rows.push([stage, "(clears)".into(), String::new(), format!("-> {results}")]);
+                    rows.push([
+                        stage,
+                        "(clears)".into(),
+                        String::new(),
+                        format!("-> {results}"),
+                    ]);
                 }
             }
             continue;
         }
-        let times = if steps.len() > 1 { format!(" x{}", steps.len()) } else { String::new() };
-        let shaders: Vec<&str> = linked[first.pass].stages.iter().map(|s| s.file.as_str()).collect();
-        rows.push([stage, format!("{}{times}", pass.name.value), shaders.join(" "), format!("{reads} -> {results}")]);
+        let times = if steps.len() > 1 {
+            format!(" x{}", steps.len())
+        } else {
+            String::new()
+        };
+        let shaders: Vec<&str> = linked[first.pass]
+            .stages
+            .iter()
+            .map(|s| s.file.as_str())
+            .collect();
+        rows.push([
+            stage,
+            format!("{}{times}", pass.name.value),
+            shaders.join(" "),
+            format!("{reads} -> {results}"),
+        ]);
     }
     rows
 }
 
 /// Bytes of the memory that transient resources share, and how much more they had alone. Devices round sizes up.
 fn shared(plan: &Plan) -> (u64, u64) {
-    let sizes: Vec<(u64, u64)> = plan.transients.iter().map(|t| (plan.bytes_of(t.res), 1)).collect();
+    let sizes: Vec<(u64, u64)> = plan
+        .transients
+        .iter()
+        .map(|t| (plan.bytes_of(t.res), 1))
+        .collect();
     let all = pack(&sizes, &plan.transients).1;
     (all, sizes.iter().map(|(bytes, _)| bytes).sum::<u64>() - all)
 }
@@ -101,14 +176,25 @@ fn shared(plan: &Plan) -> (u64, u64) {
 /// Every step in order with its barriers; sizes, formats and lifetimes of resources; what was left out and why.
 pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
     let mut out = String::new();
-    let _ = writeln!(out, "graph {}: {} of {} passes run\n", graph.name, plan.passes().len(), graph.passes.len());
+    let _ = writeln!(
+        out,
+        "graph {}: {} of {} passes run\n",
+        graph.name,
+        plan.passes().len(),
+        graph.passes.len()
+    );
     let schedule = schedule(plan);
     let _ = writeln!(out, "order");
     for (i, step) in plan.steps.iter().enumerate() {
         for barrier in &schedule.barriers[0][i] {
             let _ = writeln!(out, "       | {}", barrier_text(graph, barrier));
         }
-        let _ = writeln!(out, "{i:5}  {}{}", graph.pass_name(step.pass), repeat_text(plan, i));
+        let _ = writeln!(
+            out,
+            "{i:5}  {}{}",
+            graph.pass_name(step.pass),
+            repeat_text(plan, i)
+        );
         let _ = writeln!(out, "       {}", work_text(graph, step));
         for u in &step.uses {
             let how = match (u.read, u.write) {
@@ -123,31 +209,58 @@ pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
             } else {
                 format!("mips {}-{}", u.mips.0, u.mips.0 + u.mips.1 - 1)
             };
-            let mips = if matches!(u.res, Res::Texture(..)) { mips } else { String::new() };
+            let mips = if matches!(u.res, Res::Texture(..)) {
+                mips
+            } else {
+                String::new()
+            };
             let _ = writeln!(out, "         {how} {} {mips}", graph.title_of(u.res));
         }
         for i in &step.stripped {
-            let _ = writeln!(out, "         leaves out its stores to {}", linked[step.pass].bound[*i].name);
+            let _ = writeln!(
+                out,
+                "         leaves out its stores to {}",
+                linked[step.pass].bound[*i].name
+            );
         }
     }
-    let _ = writeln!(out, "\nresources                        size                 format       MiB  lifetime (steps)");
+    let _ = writeln!(
+        out,
+        "\nresources                        size                 format       MiB  lifetime (steps)"
+    );
     let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
     for res in plan.made() {
         let (size, format) = match res {
             Res::Texture(t, _) => {
                 let p = &plan.textures[t];
                 let ([x, y, z], mips) = (p.extent, p.mips);
-                let size = if p.volume { format!("{x}x{y}x{z}") } else { format!("{x}x{y}x{} layers", p.layers) };
+                let size = if p.volume {
+                    format!("{x}x{y}x{z}")
+                } else {
+                    format!("{x}x{y}x{} layers", p.layers)
+                };
                 (format!("{size}, {mips} mips"), p.format.name)
             }
             Res::Buffer(b, _) => (format!("{} bytes", plan.buffers[b].size), "buffer"),
         };
-        let (name, mib, lifetime) = (graph.name_of(res), mib(plan.bytes_of(res)), lifetime(plan, res));
-        let _ = writeln!(out, "{name:<28} {size:>22}  {format:<10} {mib:>7.1}  {lifetime}");
+        let (name, mib, lifetime) = (
+            graph.name_of(res),
+            mib(plan.bytes_of(res)),
+            lifetime(plan, res),
+        );
+        let _ = writeln!(
+            out,
+            "{name:<28} {size:>22}  {format:<10} {mib:>7.1}  {lifetime}"
+        );
     }
     let total: u64 = plan.made().map(|res| plan.bytes_of(res)).sum();
     let saved = shared(plan).1;
-    let _ = writeln!(out, "{:<62} {:>10.1}", "saved by memory that transient ones share", mib(saved));
+    let _ = writeln!(
+        out,
+        "{:<62} {:>10.1}",
+        "saved by memory that transient ones share",
+        mib(saved)
+    );
     let _ = writeln!(out, "{:<62} {:>10.1}", "total", mib(total - saved));
     let _ = writeln!(out, "\nleft out");
     for (pass, why) in &plan.dropped {
@@ -163,15 +276,26 @@ pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
 fn repeat_text(plan: &Plan, i: usize) -> String {
     let pass = plan.steps[i].pass;
     let count = plan.steps.iter().filter(|s| s.pass == pass).count();
-    if count > 1 { format!(" [{}]", plan.steps[i].index) } else { String::new() }
+    if count > 1 {
+        format!(" [{}]", plan.steps[i].index)
+    } else {
+        String::new()
+    }
 }
 
 fn work_text(graph: &Graph, step: &Step) -> String {
     let buffer = |b: &usize| graph.buffers[*b].0.as_str();
     let texture = |t: &usize| graph.textures[*t].0.as_str();
-    let view =
-        if step.viewport == [0, 0] { String::new() } else { format!(" at {}x{}", step.viewport[0], step.viewport[1]) };
-    let samples = if step.samples > 1 { format!(", {} samples", step.samples) } else { String::new() };
+    let view = if step.viewport == [0, 0] {
+        String::new()
+    } else {
+        format!(" at {}x{}", step.viewport[0], step.viewport[1])
+    };
+    let samples = if step.samples > 1 {
+        format!(", {} samples", step.samples)
+    } else {
+        String::new()
+    };
     match &step.work {
         Work::Dispatch([x, y, z]) => format!("dispatch {x}x{y}x{z} groups"),
         Work::DispatchIndirect(b, o) => format!("dispatch sized by {} at byte {o}", buffer(b)),
@@ -184,19 +308,44 @@ fn work_text(graph: &Graph, step: &Step) -> String {
 }
 
 fn barrier_text(graph: &Graph, b: &Barrier) -> String {
-    let layouts =
-        if b.layouts.0 == b.layouts.1 { String::new() } else { format!(", {:?} to {:?}", b.layouts.0, b.layouts.1) };
-    let mips =
-        if matches!(b.res, Res::Buffer(..)) { String::new() } else { format!(" mips {}+{}", b.mips.0, b.mips.1) };
-    format!("{}{mips}: {:?} to {:?}{layouts}", graph.title_of(b.res), b.src.0, b.dst.0)
+    let layouts = if b.layouts.0 == b.layouts.1 {
+        String::new()
+    } else {
+        format!(", {:?} to {:?}", b.layouts.0, b.layouts.1)
+    };
+    let mips = if matches!(b.res, Res::Buffer(..)) {
+        String::new()
+    } else {
+        format!(" mips {}+{}", b.mips.0, b.mips.1)
+    };
+    format!(
+        "{}{mips}: {:?} to {:?}{layouts}",
+        graph.title_of(b.res),
+        b.src.0,
+        b.dst.0
+    )
 }
 
 fn lifetime(plan: &Plan, res: Res) -> String {
-    let used = |step: &Step| step.uses.iter().find(|u| u.res.current() == res).map(|u| u.read);
-    let uses = || plan.steps.iter().enumerate().filter_map(|(i, step)| Some((i, used(step)?)));
+    let used = |step: &Step| {
+        step.uses
+            .iter()
+            .find(|u| u.res.current() == res)
+            .map(|u| u.read)
+    };
+    let uses = || {
+        plan.steps
+            .iter()
+            .enumerate()
+            .filter_map(|(i, step)| Some((i, used(step)?)))
+    };
     match (uses().next(), uses().next_back()) {
         (Some((first, read)), Some((last, _))) => {
-            let carried = if read || plan.has_history(res) { ", kept from frame to frame" } else { "" };
+            let carried = if read || plan.has_history(res) {
+                ", kept from frame to frame"
+            } else {
+                ""
+            };
             format!("{first}-{last}{carried}")
         }
         _ => String::from("-"),
@@ -209,20 +358,53 @@ pub fn params(params: &Params) -> String {
     let mut group = None;
     for p in params.offered() {
         if group != Some(&p.group) {
-            let _ = writeln!(out, "\n{}", if p.group.is_empty() { "(no group)" } else { &p.group });
+            let _ = writeln!(
+                out,
+                "\n{}",
+                if p.group.is_empty() {
+                    "(no group)"
+                } else {
+                    &p.group
+                }
+            );
             group = Some(&p.group);
         }
-        let range = p.range.map_or(String::new(), |(a, b)| format!(", {a} to {b}"));
-        let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
-        let plain = p.plain.as_ref().map_or(String::new(), |v| format!("; plain: {v}"));
-        let _ = writeln!(out, "  {} = {}{unit}  ({}{range}{plain})", p.name, p.default, p.expected());
+        let range = p
+            .range
+            .map_or(String::new(), |(a, b)| format!(", {a} to {b}"));
+        let unit = if p.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" {}", p.unit)
+        };
+        let plain = p
+            .plain
+            .as_ref()
+            .map_or(String::new(), |v| format!("; plain: {v}"));
+        let _ = writeln!(
+            out,
+            "  {} = {}{unit}  ({}{range}{plain})",
+            p.name,
+            p.default,
+            p.expected()
+        );
         let _ = writeln!(out, "      {}", p.help);
-        for (option, help) in p.kind.options().iter().zip(&p.option_help).filter(|(_, help)| !help.is_empty()) {
+        for (option, help) in p
+            .kind
+            .options()
+            .iter()
+            .zip(&p.option_help)
+            .filter(|(_, help)| !help.is_empty())
+        {
             let _ = writeln!(out, "      - {option}: {help}");
         }
     }
-    let fixed: Vec<String> =
-        params.list.iter().filter(|p| p.fixed).map(|p| format!("{} = {}", p.name, p.default)).collect();
+    let fixed: Vec<String> = params
+        .list
+        .iter()
+        .filter(|p| p.fixed)
+        .map(|p| format!("{} = {}", p.name, p.default))
+        .collect();
     if !fixed.is_empty() {
         let _ = writeln!(out, "\nfixed in this graph: {}", fixed.join(", "));
     }
@@ -237,8 +419,16 @@ pub fn values(set: &Evaluated<'_>) -> String {
     }
     for (named, value) in set.graph.values.iter().zip(&set.values) {
         let _ = match &named.signs {
-            Some(stage) => writeln!(out, "  {}: differs where stage '{stage}' reads other settings", named.name),
-            None => writeln!(out, "  {} = {value}  ({})", named.name, named.expr.value.text),
+            Some(stage) => writeln!(
+                out,
+                "  {}: differs where stage '{stage}' reads other settings",
+                named.name
+            ),
+            None => writeln!(
+                out,
+                "  {} = {value}  ({})",
+                named.name, named.expr.value.text
+            ),
         };
     }
     out
@@ -246,11 +436,21 @@ pub fn values(set: &Evaluated<'_>) -> String {
 
 /// A Graphviz picture: passes as boxes, resources as ellipses.
 pub fn dot(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
-    let mut out = String::from("digraph graph_of_passes {\n  rankdir=LR;\n  node [fontname=\"sans-serif\"];\n");
+    let mut out = String::from(
+        "digraph graph_of_passes {\n  rankdir=LR;\n  node [fontname=\"sans-serif\"];\n",
+    );
     for pass in plan.passes() {
-        let shaders: Vec<&str> = linked[pass].stages.iter().map(|s| s.file.as_str()).collect();
+        let shaders: Vec<&str> = linked[pass]
+            .stages
+            .iter()
+            .map(|s| s.file.as_str())
+            .collect();
         let name = graph.pass_name(pass);
-        let _ = writeln!(out, "  \"pass {name}\" [shape=box, label=\"{name}\\n{}\"];", shaders.join("\\n"));
+        let _ = writeln!(
+            out,
+            "  \"pass {name}\" [shape=box, label=\"{name}\\n{}\"];",
+            shaders.join("\\n")
+        );
     }
     let mut edges: Vec<String> = Vec::new();
     for step in &plan.steps {

@@ -18,7 +18,11 @@ pub fn signed(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> Vec<Value>
     for (named, value) in set.graph.values.iter().zip(&mut values) {
         if let Some(stage) = &named.signs {
             let of_stage = |step: &&Step| set.graph.passes[step.pass].value.stage() == stage;
-            let steps = plan.steps.iter().filter(of_stage).filter(|s| !reads(&linked[s.pass], &named.name));
+            let steps = plan
+                .steps
+                .iter()
+                .filter(of_stage)
+                .filter(|s| !reads(&linked[s.pass], &named.name));
             let mut hasher = foldhash::quality::FixedState::with_seed(0).build_hasher();
             (&set.graph.name, set.params.constants()).hash(&mut hasher);
             steps.for_each(|step| hash_step(step, &bytes, &linked[step.pass], plan, &mut hasher));
@@ -30,26 +34,49 @@ pub fn signed(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> Vec<Value>
 
 /// The bindings of the block of parameters.
 fn params_of(link: &Linked) -> impl Iterator<Item = &Bound> {
-    let is_params = |target: &Target| matches!(target, Target::External(e) if EXTERNALS[*e].name == "params");
-    link.bound.iter().filter(move |b| b.cases.iter().any(|c| is_params(&c.target)))
+    let is_params =
+        |target: &Target| matches!(target, Target::External(e) if EXTERNALS[*e].name == "params");
+    link.bound
+        .iter()
+        .filter(move |b| b.cases.iter().any(|c| is_params(&c.target)))
 }
 
 fn reads(link: &Linked, value: &str) -> bool {
     let reads = |bound: &Bound| {
-        let member = bound.layout.as_ref()?.members().iter().find(|m| m.name == value)?;
-        Some(bound.reads.as_ref()?.iter().any(|(from, to)| (*from..*to).contains(&member.offset)))
+        let member = bound
+            .layout
+            .as_ref()?
+            .members()
+            .iter()
+            .find(|m| m.name == value)?;
+        Some(
+            bound
+                .reads
+                .as_ref()?
+                .iter()
+                .any(|(from, to)| (*from..*to).contains(&member.offset)),
+        )
     };
     params_of(link).any(|bound| reads(bound) == Some(true))
 }
 
 fn hash_step(step: &Step, params: &[u8], link: &Linked, plan: &Plan, hasher: &mut impl Hasher) {
-    (step.pass, step.index, format!("{:?}", step.work), step.viewport, step.samples).hash(hasher);
+    (
+        step.pass,
+        step.index,
+        format!("{:?}", step.work),
+        step.viewport,
+        step.samples,
+    )
+        .hash(hasher);
     for shader in &link.stages {
         shader.words.hash(hasher);
     }
     for bound in params_of(link) {
         match &bound.reads {
-            Some(ranges) => ranges.iter().for_each(|(from, to)| params.get(*from as usize..*to as usize).hash(hasher)),
+            Some(ranges) => ranges
+                .iter()
+                .for_each(|(from, to)| params.get(*from as usize..*to as usize).hash(hasher)),
             None => params.hash(hasher),
         }
     }

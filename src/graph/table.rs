@@ -84,11 +84,15 @@ pub const MAX_ROWS: usize = 100_000;
 
 /// The rows that `bytes`, the content of the table's buffer, hold: as many as the row word says, and at most as fit.
 pub fn decode(table: &Table, bytes: &[u8]) -> Vec<Vec<Cell>> {
-    let count = word(bytes, table.rows as usize * 4).map_or(0, |n| n as usize).min(MAX_ROWS);
+    let count = word(bytes, table.rows as usize * 4)
+        .map_or(0, |n| n as usize)
+        .min(MAX_ROWS);
     let stride = table.stride as usize;
     let rows = bytes.get(table.start as usize..).unwrap_or_default();
     let whole = rows.len().checked_div(stride).unwrap_or(0);
-    (0..count.min(whole)).map(|row| decode_row(table, &rows[row * stride..(row + 1) * stride])).collect()
+    (0..count.min(whole))
+        .map(|row| decode_row(table, &rows[row * stride..(row + 1) * stride]))
+        .collect()
 }
 
 fn decode_row(table: &Table, row: &[u8]) -> Vec<Cell> {
@@ -99,7 +103,11 @@ fn decode_row(table: &Table, row: &[u8]) -> Vec<Cell> {
             CellKind::Uint => Cell::Uint(value(0)),
             CellKind::Int => Cell::Int(value(0).cast_signed()),
             CellKind::Float => Cell::Float(f32::from_bits(value(0))),
-            _ => Cell::Vector((0..kind.bytes() / 4).map(|i| f32::from_bits(value(i))).collect()),
+            _ => Cell::Vector(
+                (0..kind.bytes() / 4)
+                    .map(|i| f32::from_bits(value(i)))
+                    .collect(),
+            ),
         }
     };
     table.columns.iter().map(column).collect()
@@ -115,13 +123,28 @@ mod tests {
     use super::*;
 
     fn column((name, at, kind): (&str, u32, CellKind)) -> Column {
-        Column { name: name.into(), at, kind, unit: String::new() }
+        Column {
+            name: name.into(),
+            at,
+            kind,
+            unit: String::new(),
+        }
     }
 
     fn pairs() -> Table {
         use CellKind::{Float, Int, Uint, Vec3};
-        let columns = [("n", 0, Int), ("k", 0, Uint), ("x", 4, Float), ("v", 4, Vec3)];
-        Table { rows: 1, start: 8, stride: 16, columns: columns.map(column).into() }
+        let columns = [
+            ("n", 0, Int),
+            ("k", 0, Uint),
+            ("x", 4, Float),
+            ("v", 4, Vec3),
+        ];
+        Table {
+            rows: 1,
+            start: 8,
+            stride: 16,
+            columns: columns.map(column).into(),
+        }
     }
 
     fn buffer(rows: u32, floats: &[f32]) -> Vec<u8> {
@@ -135,7 +158,15 @@ mod tests {
         let minus_two = f32::from_bits((-2i32).cast_unsigned());
         let cells = decode(&pairs(), &buffer(1, &[minus_two, 1.5, 2.0, 3.0]));
         let vector = Cell::Vector(vec![1.5, 2.0, 3.0]);
-        assert_eq!(cells, [[Cell::Int(-2), Cell::Uint(0xffff_fffe), Cell::Float(1.5), vector]]);
+        assert_eq!(
+            cells,
+            [[
+                Cell::Int(-2),
+                Cell::Uint(0xffff_fffe),
+                Cell::Float(1.5),
+                vector
+            ]]
+        );
         let text: Vec<String> = cells[0].iter().map(ToString::to_string).collect();
         assert_eq!(text, ["-2", "4294967294", "1.5000", "1.5000 2.0000 3.0000"]);
     }
@@ -146,7 +177,12 @@ mod tests {
         assert_eq!(decode(&pairs(), &buffer(u32::MAX, &[0.0; 11])).len(), 2);
         assert_eq!(decode(&pairs(), &buffer(0, &[0.0; 8])).len(), 0);
         assert_eq!(decode(&pairs(), &[0; 4]).len(), 0);
-        let dense = Table { rows: 0, start: 4, stride: 4, columns: vec![column(("n", 0, CellKind::Uint))] };
+        let dense = Table {
+            rows: 0,
+            start: 4,
+            stride: 4,
+            columns: vec![column(("n", 0, CellKind::Uint))],
+        };
         let mut bytes = vec![0xff; 4];
         bytes.resize(4 * (MAX_ROWS + 10), 0);
         assert_eq!(decode(&dense, &bytes).len(), MAX_ROWS);

@@ -22,7 +22,10 @@ pub(super) fn uv_of(a: &Attributes) -> Vec4 {
 
 /// Linear colour as shaders unpack it.
 pub(super) fn color_of(a: &Attributes) -> Vec4 {
-    let [r, g, b, alpha] = a[9].to_bits().to_le_bytes().map(|byte| f32::from(byte) / 255.0);
+    let [r, g, b, alpha] = a[9]
+        .to_bits()
+        .to_le_bytes()
+        .map(|byte| f32::from(byte) / 255.0);
     let root = Vec3::new(r, g, b);
     (root * root).extend(alpha)
 }
@@ -37,8 +40,11 @@ pub(super) fn colored_materials(scene: &Scene) -> HashSet<u32> {
     let mut found = HashSet::new();
     for mesh in scene.meshes.iter().filter(|mesh| mesh.has_colors()) {
         for submesh in &mesh.submeshes {
-            let range = submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
-            let mut vertices = mesh.indices[range].iter().filter_map(|i| mesh.vertices.get(*i as usize));
+            let range =
+                submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
+            let mut vertices = mesh.indices[range]
+                .iter()
+                .filter_map(|i| mesh.vertices.get(*i as usize));
             if vertices.any(|v| v.color != [1.0; 4]) {
                 found.insert(submesh.material);
             }
@@ -52,8 +58,14 @@ pub(super) fn colored_materials(scene: &Scene) -> HashSet<u32> {
 pub(super) fn constants(scene: &Scene, colored: &HashSet<u32>) -> Vec<(u32, u32)> {
     const COLORS: u32 = 2040;
     const LOOKUPS: u32 = 2041;
-    let lookups = scene.materials.iter().any(|m| m.lookups != Lookups::default());
-    vec![(COLORS, u32::from(!colored.is_empty())), (LOOKUPS, u32::from(lookups))]
+    let lookups = scene
+        .materials
+        .iter()
+        .any(|m| m.lookups != Lookups::default());
+    vec![
+        (COLORS, u32::from(!colored.is_empty())),
+        (LOOKUPS, u32::from(lookups)),
+    ]
 }
 
 #[cfg(test)]
@@ -67,7 +79,10 @@ mod tests {
             let mut attributes = [0.0; 12];
             attributes[9] = f32::from_bits(pack_color([c, 1.0, 0.0, c]));
             let found = color_of(&attributes);
-            assert!((found.x - c).abs() <= c.sqrt() / 255.0 + 4e-6 && (found.w - c).abs() < 0.002, "{c}: {found}");
+            assert!(
+                (found.x - c).abs() <= c.sqrt() / 255.0 + 4e-6 && (found.w - c).abs() < 0.002,
+                "{c}: {found}"
+            );
             assert_eq!((found.y, found.z), (1.0, 0.0));
         }
     }

@@ -46,17 +46,37 @@ const MAX_DEPTH: usize = 64;
 /// Bytes that the nodes and the triangles of so many triangles can take in any pose.
 pub(super) fn capacity(triangles: usize) -> (usize, usize) {
     let triangles = triangles.max(1);
-    (2 * triangles * size_of::<Bvh2Node>(), triangles * size_of::<TriangleBlock>())
+    (
+        2 * triangles * size_of::<Bvh2Node>(),
+        triangles * size_of::<TriangleBlock>(),
+    )
 }
 
 /// Builds the hierarchy; `model` is the pose of an instance. Costs about a second a million triangles.
-pub(super) fn build(soup: &Soup<'_>, emitters: &Emitters, model: &dyn Fn(u32) -> Mat4) -> Hierarchy {
+pub(super) fn build(
+    soup: &Soup<'_>,
+    emitters: &Emitters,
+    model: &dyn Fn(u32) -> Mat4,
+) -> Hierarchy {
     let blocks = triangles(soup, emitters, model);
-    let corners: Vec<Triangle> =
-        blocks.iter().map(|t| Triangle { v0: Vec3A::from(t.a), v1: Vec3A::from(t.b), v2: Vec3A::from(t.c) }).collect();
+    let corners: Vec<Triangle> = blocks
+        .iter()
+        .map(|t| Triangle {
+            v0: Vec3A::from(t.a),
+            v1: Vec3A::from(t.b),
+            v2: Vec3A::from(t.c),
+        })
+        .collect();
     // A leaf of one, and nothing in it, where there are no triangles: the shader always reads a root.
     let (nodes, order) = if corners.is_empty() {
-        (vec![Bvh2Node::new(Aabb::from_point(Vec3A::splat(f32::MAX)), 1, 0)], Vec::new())
+        (
+            vec![Bvh2Node::new(
+                Aabb::from_point(Vec3A::splat(f32::MAX)),
+                1,
+                0,
+            )],
+            Vec::new(),
+        )
     } else {
         let mut time = std::time::Duration::default();
         let bvh = build_bvh2(&corners, BvhBuildParams::medium_build(), &mut time);
@@ -69,17 +89,28 @@ pub(super) fn build(soup: &Soup<'_>, emitters: &Emitters, model: &dyn Fn(u32) ->
     if ordered.is_empty() {
         ordered.push(TriangleBlock::zeroed());
     }
-    Hierarchy { nodes: bytemuck::cast_slice(&nodes).to_vec(), triangles: bytemuck::cast_slice(&ordered).to_vec() }
+    Hierarchy {
+        nodes: bytemuck::cast_slice(&nodes).to_vec(),
+        triangles: bytemuck::cast_slice(&ordered).to_vec(),
+    }
 }
 
-fn triangles(soup: &Soup<'_>, emitters: &Emitters, model: &dyn Fn(u32) -> Mat4) -> Vec<TriangleBlock> {
+fn triangles(
+    soup: &Soup<'_>,
+    emitters: &Emitters,
+    model: &dyn Fn(u32) -> Mat4,
+) -> Vec<TriangleBlock> {
     let mut blocks = Vec::new();
     for (number, draw) in (0u32..).zip(soup.draws) {
         let model = model(draw.instance);
         let masked = u32::from((soup.masked)(draw)) << 31;
         let corner = |i: u32| {
             let v = 3 * soup.indices[i as usize] as usize;
-            let p = Vec3::new(soup.positions[v], soup.positions[v + 1], soup.positions[v + 2]);
+            let p = Vec3::new(
+                soup.positions[v],
+                soup.positions[v + 1],
+                soup.positions[v + 2],
+            );
             model.transform_point3(p).to_array()
         };
         for first_index in (draw.first_index..draw.first_index + draw.index_count).step_by(3) {
@@ -141,7 +172,13 @@ fn below(bvh: &Bvh2, node: usize) -> Vec<u32> {
 const LEAF: usize = 2;
 
 /// Puts a balanced tree of these triangles at a node.
-fn balanced(list: &mut [u32], corners: &[Triangle], at: usize, nodes: &mut Vec<Bvh2Node>, order: &mut Vec<u32>) {
+fn balanced(
+    list: &mut [u32],
+    corners: &[Triangle],
+    at: usize,
+    nodes: &mut Vec<Bvh2Node>,
+    order: &mut Vec<u32>,
+) {
     let mut open = vec![(list, at)];
     while let Some((list, at)) = open.pop() {
         let (mut all, mut middles) = (Aabb::empty(), Aabb::empty());
@@ -201,7 +238,11 @@ mod tests {
             for i in &order[first..first + node.prim_count as usize] {
                 seen[*i as usize] += 1;
                 let t = &corners[*i as usize];
-                assert!(above.iter().all(|b| [t.v0, t.v1, t.v2].iter().all(|v| b.contains_point(*v))));
+                assert!(
+                    above
+                        .iter()
+                        .all(|b| [t.v0, t.v1, t.v2].iter().all(|v| b.contains_point(*v)))
+                );
             }
         }
         assert!(seen.iter().all(|count| *count == 1), "{seen:?}");
@@ -216,7 +257,10 @@ mod tests {
         });
         let heap = (0..5000).map(|_| [Vec3A::ZERO, Vec3A::X, Vec3A::Y]);
         for triangles in [chain.collect::<Vec<_>>(), heap.collect()] {
-            let corners: Vec<Triangle> = triangles.into_iter().map(|[v0, v1, v2]| Triangle { v0, v1, v2 }).collect();
+            let corners: Vec<Triangle> = triangles
+                .into_iter()
+                .map(|[v0, v1, v2]| Triangle { v0, v1, v2 })
+                .collect();
             let mut time = std::time::Duration::default();
             let bvh = build_bvh2(&corners, BvhBuildParams::medium_build(), &mut time);
             let (nodes, order) = evened(&bvh, &corners);

@@ -60,12 +60,20 @@ impl Emitters {
         let mut found = Emitters::default();
         let mut count = 0u32;
         for (number, draw) in (0u32..).zip(soup.draws) {
-            let Some(material) = scene.materials.get(draw.material as usize) else { continue };
+            let Some(material) = scene.materials.get(draw.material as usize) else {
+                continue;
+            };
             let model = scene.instance_transform(draw.instance as usize, 0.0);
-            let triangles = (draw.first_index..draw.first_index + draw.index_count).step_by(3).map(|first| {
-                let vertices = [0, 1, 2].map(|k| soup.indices[(first + k) as usize] as usize);
-                (first, vertices, vertices.map(|v| Vec3::from_slice(&soup.positions[3 * v..3 * v + 3])))
-            });
+            let triangles = (draw.first_index..draw.first_index + draw.index_count)
+                .step_by(3)
+                .map(|first| {
+                    let vertices = [0, 1, 2].map(|k| soup.indices[(first + k) as usize] as usize);
+                    (
+                        first,
+                        vertices,
+                        vertices.map(|v| Vec3::from_slice(&soup.positions[3 * v..3 * v + 3])),
+                    )
+                });
             for (_, _, corners) in triangles.clone() {
                 let [a, b, c] = corners.map(|c| model.transform_point3(c));
                 let area = 0.5 * f64::from((b - a).cross(c - a).length());
@@ -74,11 +82,16 @@ impl Emitters {
             if material.emission == Vec3::ZERO {
                 continue;
             }
-            let Some(mesh) = scene.instances.get(draw.instance as usize).map(|i| i.mesh) else { continue };
+            let Some(mesh) = scene.instances.get(draw.instance as usize).map(|i| i.mesh) else {
+                continue;
+            };
             let outside = outsides.entry(mesh).or_insert_with(|| {
                 let scale = model.to_scale_rotation_translation().0.abs().max_element();
                 let longest = LARGEST_LAMP * (high - low).length() / scale;
-                scene.meshes.get(mesh as usize).map_or_else(Vec::new, |m| m.outsides(longest))
+                scene
+                    .meshes
+                    .get(mesh as usize)
+                    .map_or_else(Vec::new, |m| m.outsides(longest))
             });
             let small = |t: u32| scene.textures.get(t as usize).and_then(|t| t.small(TEXELS));
             let mut picture = |t: Option<u32>, lookup: Lookup| {
@@ -91,28 +104,50 @@ impl Emitters {
                 tinted: material.tinted_emission,
                 colors: picture(material.emission_texture, lookups.emission),
                 masked,
-                mask: picture(material.base_color_texture.filter(|_| masked), lookups.base_color),
+                mask: picture(
+                    material.base_color_texture.filter(|_| masked),
+                    lookups.base_color,
+                ),
                 cutoff: material.alpha_cutoff / material.base_color.w.max(1e-6),
             };
             for (first, vertices, corners) in triangles {
                 let uvs = vertices.map(|v| uv_of(&attributes[v]));
                 let tints = vertices.map(|v| color_of(&attributes[v]));
                 let parts = shine.parts(uvs, tints);
-                let mean = |part| shine.mean(part_corners(uvs, parts, part), part_corners(tints, parts, part));
+                let mean = |part| {
+                    shine.mean(
+                        part_corners(uvs, parts, part),
+                        part_corners(tints, parts, part),
+                    )
+                };
                 let radiance = (0..parts * parts).map(mean).collect();
                 count += parts * parts;
                 if count as usize > MOST_EMITTERS {
                     return Emitters::default();
                 }
-                let outside = outside.get((first - soup.first_index[mesh as usize]) as usize / 3).copied().flatten();
+                let outside = outside
+                    .get((first - soup.first_index[mesh as usize]) as usize / 3)
+                    .copied()
+                    .flatten();
                 let key = (number, first);
-                found.list.push(Emitter { key, instance: draw.instance, corners, outside, parts, radiance });
+                found.list.push(Emitter {
+                    key,
+                    instance: draw.instance,
+                    corners,
+                    outside,
+                    parts,
+                    radiance,
+                });
             }
         }
         // Places are drawn by number, and numbers are of what triangles hold alone: no file's order shows.
         let content = |e: &Emitter| {
             let bits = |v: &Vec3| v.to_array().map(f32::to_bits);
-            (e.instance, e.corners.each_ref().map(bits), e.radiance.iter().map(bits).collect::<Vec<_>>())
+            (
+                e.instance,
+                e.corners.each_ref().map(bits),
+                e.radiance.iter().map(bits).collect::<Vec<_>>(),
+            )
         };
         found.list.sort_by_cached_key(content);
         let mut next = 0;
@@ -126,7 +161,9 @@ impl Emitters {
     /// Where a triangle's parts are in the buffer, for rays that hit it: the number of the first and one, and from bit 24 on the
     /// parts of an edge; 0 of one that emits nothing.
     pub(super) fn number(&self, draw: u32, first_index: u32) -> u32 {
-        self.numbers.get(&(draw, first_index)).map_or(0, |(number, parts)| (number + 1) | (parts << 24))
+        self.numbers
+            .get(&(draw, first_index))
+            .map_or(0, |(number, parts)| (number + 1) | (parts << 24))
     }
 
     /// Whether any of them moves or changes its shape.
@@ -141,14 +178,22 @@ impl Emitters {
 
     /// Content of the buffer `emitters` in the pose of these instances, with corners from positions and indices where vertices
     /// have moved.
-    pub(super) fn buffer(&self, instances: &[InstanceBlock], posed: Option<(&[f32], &[u32])>) -> Vec<u8> {
+    pub(super) fn buffer(
+        &self,
+        instances: &[InstanceBlock],
+        posed: Option<(&[f32], &[u32])>,
+    ) -> Vec<u8> {
         let mut blocks = Vec::new();
         for emitter in &self.list {
             let model = instances.get(emitter.instance as usize);
             let model = model.map_or(Mat4::IDENTITY, |b| Mat4::from_cols_array(&b.model));
-            let moved = posed.and_then(|posed| corners_at(posed, emitter.key.1)).unwrap_or(emitter.corners);
+            let moved = posed
+                .and_then(|posed| corners_at(posed, emitter.key.1))
+                .unwrap_or(emitter.corners);
             let corners = moved.map(|c| model.transform_point3(c));
-            let front = emitter.outside.map(|side| (side == Side::Front) == (model.determinant() > 0.0));
+            let front = emitter
+                .outside
+                .map(|side| (side == Side::Front) == (model.determinant() > 0.0));
             for (part, radiance) in (0u32..).zip(&emitter.radiance) {
                 let [a, b, c] = part_corners(corners, emitter.parts, part);
                 blocks.push(EmitterBlock {
@@ -165,23 +210,40 @@ impl Emitters {
         }
         let power: Vec<f64> = blocks.iter().map(power_of).collect();
         let all: f64 = power.iter().sum();
-        let brightest = blocks.iter().map(|b| f64::from(luminance(b.radiance.into()))).fold(0.0, f64::max);
+        let brightest = blocks
+            .iter()
+            .map(|b| f64::from(luminance(b.radiance.into())))
+            .fold(0.0, f64::max);
         let known = all > 0.0 && all.is_finite() && brightest * self.surface > UNEVEN * all;
         if known {
             choose(&mut blocks, &power, all);
         }
-        let count = if known { u32::try_from(blocks.len()).unwrap_or(0) } else { 0 };
+        let count = if known {
+            u32::try_from(blocks.len()).unwrap_or(0)
+        } else {
+            0
+        };
         let head = [count, (all as f32).to_bits(), 0, 0];
         // There is always one to bind.
         blocks.resize(blocks.len().max(1), bytemuck::Zeroable::zeroed());
-        [bytemuck::cast_slice::<u32, u8>(&head), bytemuck::cast_slice(&blocks)].concat()
+        [
+            bytemuck::cast_slice::<u32, u8>(&head),
+            bytemuck::cast_slice(&blocks),
+        ]
+        .concat()
     }
 }
 
 /// The corners of the triangle with these indices.
 fn corners_at((positions, indices): (&[f32], &[u32]), first: u32) -> Option<[Vec3; 3]> {
     let corners = indices.get(first as usize..)?.first_chunk::<3>()?;
-    let corner = |i: u32| positions.get(3 * i as usize..)?.first_chunk::<3>().copied().map(Vec3::from);
+    let corner = |i: u32| {
+        positions
+            .get(3 * i as usize..)?
+            .first_chunk::<3>()
+            .copied()
+            .map(Vec3::from)
+    };
     let [a, b, c] = corners.map(corner);
     Some([a?, b?, c?])
 }
@@ -201,10 +263,17 @@ fn luminance(c: Vec3) -> f32 {
 /// Each is drawn as often as its power says, by one lookup (Walker 1977; Vose 1991), and a place on it by area.
 fn choose(blocks: &mut [EmitterBlock], power: &[f64], all: f64) {
     let mut share: Vec<f64> = power.iter().map(|p| p / all * power.len() as f64).collect();
-    let (mut small, mut large): (Vec<usize>, Vec<usize>) = (0..share.len()).partition(|i| share[*i] < 1.0);
+    let (mut small, mut large): (Vec<usize>, Vec<usize>) =
+        (0..share.len()).partition(|i| share[*i] < 1.0);
     for (block, power) in blocks.iter_mut().zip(power) {
-        (block.chance, block.density) =
-            (1.0, if *power > 0.0 { luminance(block.radiance.into()) / all as f32 } else { 0.0 });
+        (block.chance, block.density) = (
+            1.0,
+            if *power > 0.0 {
+                luminance(block.radiance.into()) / all as f32
+            } else {
+                0.0
+            },
+        );
     }
     while let (Some(i), Some(k)) = (small.pop(), large.last().copied()) {
         (blocks[i].chance, blocks[i].other) = (share[i] as f32, u32::try_from(k).unwrap_or(0));
@@ -215,7 +284,11 @@ fn choose(blocks: &mut [EmitterBlock], power: &[f64], all: f64) {
         }
     }
     // What rounding has left below 1 is of those that have no power at all.
-    blocks.iter_mut().zip(power).filter(|(b, p)| **p == 0.0 && b.chance == 1.0).for_each(|(b, _)| b.chance = 0.0);
+    blocks
+        .iter_mut()
+        .zip(power)
+        .filter(|(b, p)| **p == 0.0 && b.chance == 1.0)
+        .for_each(|(b, _)| b.chance = 0.0);
 }
 
 /// Emission of a material, by place.
@@ -234,19 +307,38 @@ impl Shine {
     /// Parts of a triangle's edge, so that each has one radiance.
     fn parts(&self, uvs: [Vec4; 3], tints: [Vec4; 3]) -> u32 {
         let pictures = [&self.colors, &self.mask].into_iter().flatten();
-        let finest =
-            pictures.map(|(picture, lookup)| parts_of(picture, uvs.map(|uv| lookup.set(uv)))).max().unwrap_or(1);
-        let varies = tints.iter().any(|tint| (*tint - tints[0]).abs().max_element() > 0.02);
-        if varies && (self.tinted || self.masked) { finest.max(TINTED_PARTS) } else { finest }
+        let finest = pictures
+            .map(|(picture, lookup)| parts_of(picture, uvs.map(|uv| lookup.set(uv))))
+            .max()
+            .unwrap_or(1);
+        let varies = tints
+            .iter()
+            .any(|tint| (*tint - tints[0]).abs().max_element() > 0.02);
+        if varies && (self.tinted || self.masked) {
+            finest.max(TINTED_PARTS)
+        } else {
+            finest
+        }
     }
 
     fn at(&self, uv: Vec4, tint: Vec4) -> Vec3 {
-        let read =
-            |from: &Option<(SmallPicture, Lookup)>| from.as_ref().map(|(picture, lookup)| picture.at(lookup.place(uv)));
+        let read = |from: &Option<(SmallPicture, Lookup)>| {
+            from.as_ref()
+                .map(|(picture, lookup)| picture.at(lookup.place(uv)))
+        };
         let color = read(&self.colors).map_or(Vec3::ONE, Vec4::truncate)
-            * if self.tinted { tint.truncate() } else { Vec3::ONE };
-        let hole = self.masked && read(&self.mask).map_or(1.0, |texel| texel.w) * tint.w < self.cutoff;
-        if hole { Vec3::ZERO } else { self.emission * color }
+            * if self.tinted {
+                tint.truncate()
+            } else {
+                Vec3::ONE
+            };
+        let hole =
+            self.masked && read(&self.mask).map_or(1.0, |texel| texel.w) * tint.w < self.cutoff;
+        if hole {
+            Vec3::ZERO
+        } else {
+            self.emission * color
+        }
     }
 
     /// Mean over a triangle.
@@ -256,26 +348,42 @@ impl Shine {
         }
         const EDGE: u32 = 6;
         let parts = EDGE * EDGE;
-        let middle = |corners: [Vec4; 3], part| part_corners(corners, EDGE, part).iter().sum::<Vec4>() / 3.0;
-        (0..parts).map(|part| self.at(middle(uvs, part), middle(tints, part))).sum::<Vec3>() / parts as f32
+        let middle =
+            |corners: [Vec4; 3], part| part_corners(corners, EDGE, part).iter().sum::<Vec4>() / 3.0;
+        (0..parts)
+            .map(|part| self.at(middle(uvs, part), middle(tints, part)))
+            .sum::<Vec3>()
+            / parts as f32
     }
 }
 
 /// How finely a triangle's texture must be told.
 fn parts_of(picture: &SmallPicture, uvs: [Vec2; 3]) -> u32 {
     let size = Vec2::new(picture.width as f32, picture.height as f32);
-    let longest =
-        [(0, 1), (1, 2), (2, 0)].map(|(i, k)| ((uvs[i] - uvs[k]) * size).length()).into_iter().fold(0.0, f32::max);
-    if longest.is_finite() { (longest.ceil() as u32).clamp(1, MOST_PARTS) } else { 1 }
+    let longest = [(0, 1), (1, 2), (2, 0)]
+        .map(|(i, k)| ((uvs[i] - uvs[k]) * size).length())
+        .into_iter()
+        .fold(0.0, f32::max);
+    if longest.is_finite() {
+        (longest.ceil() as u32).clamp(1, MOST_PARTS)
+    } else {
+        1
+    }
 }
 
 /// Corners of a part of a triangle whose edges have so many: row by row from the edge of `a` and `b`, in turns such as the whole and
 /// such as its mirror image.
 fn part_corners<V>(corners: [V; 3], parts: u32, part: u32) -> [V; 3]
 where
-    V: Copy + std::ops::Add<Output = V> + std::ops::Sub<Output = V> + std::ops::Mul<f32, Output = V>,
+    V: Copy
+        + std::ops::Add<Output = V>
+        + std::ops::Sub<Output = V>
+        + std::ops::Mul<f32, Output = V>,
 {
-    let row = (0..parts).rev().find(|j| j * (2 * parts - j) <= part).unwrap_or(0);
+    let row = (0..parts)
+        .rev()
+        .find(|j| j * (2 * parts - j) <= part)
+        .unwrap_or(0);
     let within = part - row * (2 * parts - row);
     let at = |i: u32, j: u32| {
         let [b, c] = [i, j].map(|n| n as f32 / parts as f32);
@@ -319,7 +427,13 @@ mod tests {
             radiance: [radiance; 3],
             ..bytemuck::Zeroable::zeroed()
         };
-        let mut blocks = [block(1.0, 3.0), block(2.0, 0.0), block(0.5, 1.0), block(1.0, 100.0), block(0.0, 5.0)];
+        let mut blocks = [
+            block(1.0, 3.0),
+            block(2.0, 0.0),
+            block(0.5, 1.0),
+            block(1.0, 100.0),
+            block(0.0, 5.0),
+        ];
         let power: Vec<f64> = blocks.iter().map(power_of).collect();
         let all = power.iter().sum::<f64>();
         choose(&mut blocks, &power, all);
@@ -329,7 +443,11 @@ mod tests {
             drawn[b.other as usize] += f64::from(1.0 - b.chance) / 5.0;
         }
         for (i, (drawn, power)) in drawn.iter().zip(&power).enumerate() {
-            assert!((drawn - power / all).abs() < 1e-6, "{i}: {drawn}, {}", power / all);
+            assert!(
+                (drawn - power / all).abs() < 1e-6,
+                "{i}: {drawn}, {}",
+                power / all
+            );
         }
     }
 }

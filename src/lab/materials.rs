@@ -2,7 +2,8 @@
 
 use crate::graph::externals::MATERIAL_ARRAYS;
 use crate::scene::{
-    Lookup, MAX_TEXTURE_KINDS, SHARED_EDGE, Scene, Texture, TextureFormat, TextureKind, Wrap, keep_their_size,
+    Lookup, MAX_TEXTURE_KINDS, SHARED_EDGE, Scene, Texture, TextureFormat, TextureKind, Wrap,
+    keep_their_size,
 };
 use crate::vulkan::{Gpu, Image, ImageDesc, Result, Upload, View, ViewDesc, vk};
 use std::borrow::Cow;
@@ -28,7 +29,9 @@ pub(super) struct MaterialTextures {
 impl MaterialTextures {
     /// A texture and how it is looked up, as `materials/materials.glsl` unpacks it.
     pub fn handle(&self, texture: Option<u32>, lookup: Lookup) -> u32 {
-        let Some(handle) = texture.and_then(|t| self.handles.get(t as usize)) else { return NO_TEXTURE };
+        let Some(handle) = texture.and_then(|t| self.handles.get(t as usize)) else {
+            return NO_TEXTURE;
+        };
         let [u, v] = lookup.wrap.map(|wrap| match wrap {
             Wrap::Repeat => 0,
             Wrap::Clamp => 1,
@@ -39,7 +42,11 @@ impl MaterialTextures {
     }
 }
 
-pub(super) fn upload(gpu: &Arc<Gpu>, scene: &Scene, upload: &mut Upload) -> Result<MaterialTextures> {
+pub(super) fn upload(
+    gpu: &Arc<Gpu>,
+    scene: &Scene,
+    upload: &mut Upload,
+) -> Result<MaterialTextures> {
     let textures = fit(scene, gpu.info.features.bc);
     let mut classes: BTreeMap<TextureKind, Vec<usize>> = BTreeMap::new();
     for (i, texture) in textures.iter().enumerate() {
@@ -52,15 +59,33 @@ pub(super) fn upload(gpu: &Arc<Gpu>, scene: &Scene, upload: &mut Upload) -> Resu
         bytes: 0,
     };
     for (slot, ((width, height, mips, format), members)) in (0u32..).zip(&classes) {
-        let parts: Vec<Vec<&[u8]>> =
-            members.iter().map(|m| textures[*m].mips.iter().map(Vec::as_slice).collect()).collect();
+        let parts: Vec<Vec<&[u8]>> = members
+            .iter()
+            .map(|m| textures[*m].mips.iter().map(Vec::as_slice).collect())
+            .collect();
         for (layer, member) in (0u32..).zip(members) {
             out.handles[*member] = slot << 16 | layer;
         }
-        add(gpu, upload, &mut out, [*width, *height], *mips, vulkan_format(*format), &parts)?;
+        add(
+            gpu,
+            upload,
+            &mut out,
+            [*width, *height],
+            *mips,
+            vulkan_format(*format),
+            &parts,
+        )?;
     }
     while out.views.len() < MATERIAL_ARRAYS {
-        add(gpu, upload, &mut out, [1, 1], 1, vk::Format::R8G8B8A8_UNORM, &[vec![&[255; 4]]])?;
+        add(
+            gpu,
+            upload,
+            &mut out,
+            [1, 1],
+            1,
+            vk::Format::R8G8B8A8_UNORM,
+            &[vec![&[255; 4]]],
+        )?;
     }
     Ok(out)
 }
@@ -106,7 +131,11 @@ fn fit(scene: &Scene, bc: bool) -> Vec<Cow<'_, Texture>> {
         .textures
         .iter()
         .map(|t| {
-            if t.format.is_compressed() && !bc { Cow::Owned(t.resampled(t.width, t.height)) } else { Cow::Borrowed(t) }
+            if t.format.is_compressed() && !bc {
+                Cow::Owned(t.resampled(t.width, t.height))
+            } else {
+                Cow::Borrowed(t)
+            }
         })
         .collect();
     let kinds: Vec<TextureKind> = list.iter().map(|t| t.kind()).collect();

@@ -85,13 +85,18 @@ impl LabError {
     /// The error of making something, for what an encoder says.
     pub fn making<E: std::fmt::Display>(what: impl Into<String>) -> impl FnOnce(E) -> LabError {
         let what = what.into();
-        move |why| LabError::Make { what, why: why.to_string() }
+        move |why| LabError::Make {
+            what,
+            why: why.to_string(),
+        }
     }
 
     /// The error of an experiment's scene. If the scene is missing, the place is the experiment's line.
     pub fn of_scene(experiment: &Experiment, error: SceneError) -> LabError {
         let found = match &error {
-            SceneError::NotFound { .. } | SceneError::Read { .. } => experiment.error_in("scene", error.to_string()),
+            SceneError::NotFound { .. } | SceneError::Read { .. } => {
+                experiment.error_in("scene", error.to_string())
+            }
             _ => None,
         };
         found.map_or(LabError::Scene(error), |found| LabError::Input(vec![found]))
@@ -102,7 +107,11 @@ impl LabError {
     /// # Errors
     /// More than none.
     pub fn of_messages(count: usize) -> Result<(), LabError> {
-        if count == 0 { Ok(()) } else { Err(LabError::Validation(count)) }
+        if count == 0 {
+            Ok(())
+        } else {
+            Err(LabError::Validation(count))
+        }
     }
 }
 
@@ -160,8 +169,14 @@ impl Lab {
     /// # Errors
     /// No device, no folders.
     pub fn open(home: Workspace, options: GpuOptions) -> Result<Lab, LabError> {
-        let options = GpuOptions { cache: home.cache.clone(), ..options };
-        Ok(Lab { gpu: Gpu::open(&options)?, home })
+        let options = GpuOptions {
+            cache: home.cache.clone(),
+            ..options
+        };
+        Ok(Lab {
+            gpu: Gpu::open(&options)?,
+            home,
+        })
     }
 
     /// Loads what an experiment needs. `wanted` are the resources whose content will be read.
@@ -174,10 +189,16 @@ impl Lab {
         scene: Arc<Scene>,
         wanted: impl FnOnce(&Graph) -> Result<Vec<String>, LabError>,
     ) -> Result<(Session, Vec<Diagnostic>), LabError> {
-        let loaded = self.home.load_for(experiment, &scene, &self.gpu.info).map_err(LabError::Input)?;
+        let loaded = self
+            .home
+            .load_for(experiment, &scene, &self.gpu.info)
+            .map_err(LabError::Input)?;
         let warnings = loaded.warnings.clone();
         let wanted = wanted(&loaded.graph)?;
-        Ok((self.build(experiment, &loaded, scene, wanted, None)?, warnings))
+        Ok((
+            self.build(experiment, &loaded, scene, wanted, None)?,
+            warnings,
+        ))
     }
 
     /// Makes a session, from parts of one in use where they fit; see [`Session::swap_in`]. Shaders that `loaded` lacks
@@ -197,21 +218,34 @@ impl Lab {
         let params = params_of(&graph, experiment)?;
         let surroundings = environment(&scene, experiment.size, &self.gpu.info);
         let set = Evaluated::new(&graph, &params, surroundings.clone());
-        let Loaded { linked, .. } = self.home.with_shaders(loaded, &runs(&set)).map_err(LabError::Input)?;
+        let Loaded { linked, .. } = self
+            .home
+            .with_shaders(loaded, &runs(&set))
+            .map_err(LabError::Input)?;
         wanted.extend(graph.checked_with(&wanted));
         let viewpoint = viewpoint_of(experiment, &scene)?;
         let plan = plan(&set, &linked, &wanted, &self.gpu.info).map_err(LabError::Input)?;
         let rays = traces_rays(&linked, &plan);
         let fits = |s: &&ReusableParts| {
-            Arc::ptr_eq(&s.scene, &scene) && s.max_edge == plan.max_edge && (s.scene_gpu.has_rays() || !rays)
+            Arc::ptr_eq(&s.scene, &scene)
+                && s.max_edge == plan.max_edge
+                && (s.scene_gpu.has_rays() || !rays)
         };
         let scene_gpu = match reuse.filter(fits) {
             Some(reuse) if reuse.shared => reuse.scene_gpu.fork(&self.gpu)?,
             Some(reuse) => reuse.scene_gpu.clone(),
             None => {
                 let limit = self.gpu.info.limits.max_storage_buffer_range;
-                let split = plan.max_edge.map(|edge| split(&scene, edge as f32, limit)).transpose()?;
-                SceneGpu::new(&self.gpu, split.map_or_else(|| scene.clone(), Arc::new), scene.origin(), rays)?
+                let split = plan
+                    .max_edge
+                    .map(|edge| split(&scene, edge as f32, limit))
+                    .transpose()?;
+                SceneGpu::new(
+                    &self.gpu,
+                    split.map_or_else(|| scene.clone(), Arc::new),
+                    scene.origin(),
+                    rays,
+                )?
             }
         };
         // What textures and buffers hold is of their scene: of another one only the pipelines are taken.
@@ -247,9 +281,9 @@ impl Lab {
 /// Whether a pass that runs asks for the hierarchy over the scene's triangles.
 fn traces_rays(linked: &[Linked], plan: &Plan) -> bool {
     let bound = plan.steps.iter().flat_map(|s| &linked[s.pass].bound);
-    bound
-        .flat_map(|b| &b.cases)
-        .any(|c| matches!(c.target, Target::External(e) if RAY_RESOURCES.contains(&EXTERNALS[e].name)))
+    bound.flat_map(|b| &b.cases).any(
+        |c| matches!(c.target, Target::External(e) if RAY_RESOURCES.contains(&EXTERNALS[e].name)),
+    )
 }
 
 /// The parameters of an experiment: defaults, then what it sets.
@@ -276,12 +310,15 @@ pub fn viewpoint_of(experiment: &Experiment, scene: &Scene) -> Result<Viewpoint,
     match &experiment.camera {
         CameraChoice::Named(name) => match scene.cameras.get(name).or_else(|| {
             // Scenes without a camera of the default name are seen from their first.
-            (name == "default").then(|| scene.cameras.values().next()).flatten()
+            (name == "default")
+                .then(|| scene.cameras.values().next())
+                .flatten()
         }) {
             Some(camera) => Ok(Viewpoint::new(camera)),
             None if scene.cameras.is_empty() => Ok(Viewpoint::around(scene)),
             None => {
-                let hint = nearest(name, scene.cameras.keys().map(String::as_str)).unwrap_or_default();
+                let hint =
+                    nearest(name, scene.cameras.keys().map(String::as_str)).unwrap_or_default();
                 let message = format!("scene '{}' has no camera '{name}' ({hint})", scene.name);
                 Err(match experiment.error_in("camera", &message) {
                     Some(found) => LabError::Input(vec![found]),
@@ -299,7 +336,10 @@ pub fn viewpoint_of(experiment: &Experiment, scene: &Scene) -> Result<Viewpoint,
 /// The error for a texture that the graph does not have.
 pub fn no_texture(graph: &Graph, name: &str) -> LabError {
     let hint = nearest(name, graph.textures.iter().map(|t| t.0.as_str()));
-    LabError::Request(format!("no texture '{name}'{}", hint.map_or(String::new(), |h| format!(" ({h})"))))
+    LabError::Request(format!(
+        "no texture '{name}'{}",
+        hint.map_or(String::new(), |h| format!(" ({h})"))
+    ))
 }
 
 /// The scene with triangles no longer than `edge`, unless the device cannot hold their vertices: splitting takes long.

@@ -32,11 +32,23 @@ impl Session {
     /// The device was lost.
     pub fn parts(&mut self) -> Result<BTreeMap<String, Linear>, LabError> {
         let mut parts = BTreeMap::new();
-        for LightPart { name, texture, kind, .. } in parts_of(&self.graph) {
+        for LightPart {
+            name,
+            texture,
+            kind,
+            ..
+        } in parts_of(&self.graph)
+        {
             let index = self.graph.texture(&texture);
             let made = index.is_some_and(|i| !self.program.plan.textures[i].usage.is_empty());
             if made && self.wanted.contains(&texture) {
-                parts.insert(name, Linear { kind, ..self.texels(&texture, 0, 0)?.linear() });
+                parts.insert(
+                    name,
+                    Linear {
+                        kind,
+                        ..self.texels(&texture, 0, 0)?.linear()
+                    },
+                );
             }
         }
         Ok(parts)

@@ -55,12 +55,20 @@ struct Lighting {
 impl Lighting {
     fn of(scene: &Scene) -> Lighting {
         let (lights, environment) = (scene.lights.clone(), scene.environment.clone());
-        Lighting { lights, sky: scene.sky, sky_scale: sky::scale_of(environment.as_ref()), environment }
+        Lighting {
+            lights,
+            sky: scene.sky,
+            sky_scale: sky::scale_of(environment.as_ref()),
+            environment,
+        }
     }
 
     /// The lights' blocks and shadow views, that of the sky's sun last.
     fn blocks(&self, bounds: (Vec3, Vec3), origin: Vec3) -> (Vec<LightBlock>, Vec<ShadowBlock>) {
-        let sun = self.environment.as_ref().and_then(|e| e.sun(self.sky, e.rotation));
+        let sun = self
+            .environment
+            .as_ref()
+            .and_then(|e| e.sun(self.sky, e.rotation));
         let all: Vec<Light> = self.lights.iter().cloned().chain(sun).collect();
         lights((&all, self.lights.len()), bounds, origin)
     }
@@ -68,7 +76,11 @@ impl Lighting {
     /// The part of `sceneInfo` that changes with it.
     fn inform(&self, info: SceneInfoBlock) -> SceneInfoBlock {
         let rotation = self.environment.as_ref().map(|e| e.rotation);
-        SceneInfoBlock { sky: (self.sky * self.sky_scale).to_array(), sky_turn: sky::turn_of(rotation), ..info }
+        SceneInfoBlock {
+            sky: (self.sky * self.sky_scale).to_array(),
+            sky_turn: sky::turn_of(rotation),
+            ..info
+        }
     }
 }
 
@@ -87,13 +99,16 @@ impl SceneGpu {
         let textures = materials::upload(gpu, scene, &mut upload)?;
         let sky = sky::texture(gpu, scene.environment.as_ref(), &mut upload)?;
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let (positions, attributes, indices, first_index) = vertices(scene, &scene.posed_meshes(0.0));
+        let (positions, attributes, indices, first_index) =
+            vertices(scene, &scene.posed_meshes(0.0));
         let draws = draws(scene, &first_index);
         let triangles = triangles(&draws, &indices, &positions, &attributes);
         let opaque = draws.iter().filter(|d| !is_masked(scene, d)).count();
         // One command (VkDrawIndexedIndirectCommand) a draw; the instance number tells the shaders which.
-        let commands: Vec<[u32; 5]> =
-            (0u32..).zip(&draws).map(|(i, d)| [d.index_count, 1, d.first_index, 0, i]).collect();
+        let commands: Vec<[u32; 5]> = (0u32..)
+            .zip(&draws)
+            .map(|(i, d)| [d.index_count, 1, d.first_index, 0, i])
+            .collect();
         let (low, high) = scene.bounds();
         let lighting = Lighting::of(scene);
         let (light_blocks, shadow_blocks) = lighting.blocks((low, high), origin);
@@ -120,10 +135,14 @@ impl SceneGpu {
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let index = vk::BufferUsageFlags::INDEX_BUFFER | storage;
         let index_buffer = upload.buffer("indices", bytemuck::cast_slice(&indices), index)?;
-        let command_buffer =
-            upload.buffer("draw commands", bytemuck::cast_slice(&commands), vk::BufferUsageFlags::INDIRECT_BUFFER)?;
+        let command_buffer = upload.buffer(
+            "draw commands",
+            bytemuck::cast_slice(&commands),
+            vk::BufferUsageFlags::INDIRECT_BUFFER,
+        )?;
         let instance_blocks = instances(scene, origin, 0.0, None, false);
-        let instances = upload.buffer("instances", bytemuck::cast_slice(&instance_blocks), storage)?;
+        let instances =
+            upload.buffer("instances", bytemuck::cast_slice(&instance_blocks), storage)?;
         let camera = upload.buffer("camera", &[0; CAMERA_BYTES], uniform)?;
         let masked = |d: &DrawBlock| is_masked(scene, d);
         let soup = Soup {
@@ -137,23 +156,64 @@ impl SceneGpu {
         let mut buffers = HashMap::from([
             ("camera", camera.clone()),
             ("indices", index_buffer.clone()),
-            ("sceneInfo", upload.buffer("sceneInfo", bytemuck::bytes_of(&info), uniform)?),
-            ("lights", upload.buffer("lights", bytemuck::cast_slice(&light_blocks), storage)?),
-            ("shadowViews", upload.buffer("shadowViews", bytemuck::cast_slice(&shadow_blocks), storage)?),
-            ("materials", upload.buffer("materials", bytemuck::cast_slice(&material_blocks), storage)?),
-            ("dielectrics", upload.buffer("dielectrics", bytemuck::cast_slice(&dielectrics.list), storage)?),
+            (
+                "sceneInfo",
+                upload.buffer("sceneInfo", bytemuck::bytes_of(&info), uniform)?,
+            ),
+            (
+                "lights",
+                upload.buffer("lights", bytemuck::cast_slice(&light_blocks), storage)?,
+            ),
+            (
+                "shadowViews",
+                upload.buffer("shadowViews", bytemuck::cast_slice(&shadow_blocks), storage)?,
+            ),
+            (
+                "materials",
+                upload.buffer("materials", bytemuck::cast_slice(&material_blocks), storage)?,
+            ),
+            (
+                "dielectrics",
+                upload.buffer(
+                    "dielectrics",
+                    bytemuck::cast_slice(&dielectrics.list),
+                    storage,
+                )?,
+            ),
             ("instances", instances.clone()),
-            ("draws", upload.buffer("draws", bytemuck::cast_slice(&draws), storage)?),
-            ("triangles", upload.buffer("triangles", bytemuck::cast_slice(&triangles), storage)?),
-            ("emitters", upload.buffer("emitters", &emitters.buffer(&instance_blocks, None), storage)?),
-            ("positions", upload.buffer("positions", bytemuck::cast_slice(&positions), storage)?),
-            ("attributes", upload.buffer("attributes", bytemuck::cast_slice(&attributes), storage)?),
+            (
+                "draws",
+                upload.buffer("draws", bytemuck::cast_slice(&draws), storage)?,
+            ),
+            (
+                "triangles",
+                upload.buffer("triangles", bytemuck::cast_slice(&triangles), storage)?,
+            ),
+            (
+                "emitters",
+                upload.buffer(
+                    "emitters",
+                    &emitters.buffer(&instance_blocks, None),
+                    storage,
+                )?,
+            ),
+            (
+                "positions",
+                upload.buffer("positions", bytemuck::cast_slice(&positions), storage)?,
+            ),
+            (
+                "attributes",
+                upload.buffer("attributes", bytemuck::cast_slice(&attributes), storage)?,
+            ),
         ]);
         if rays {
             let found = hierarchy(&soup, &emitters, &instance_blocks);
             buffers.extend(ray_buffers(&mut upload, found, &info)?);
             let texels = sky::texels(scene.environment.as_ref());
-            buffers.insert("skyTexels", upload.buffer("skyTexels", bytemuck::cast_slice(&texels), storage)?);
+            buffers.insert(
+                "skyTexels",
+                upload.buffer("skyTexels", bytemuck::cast_slice(&texels), storage)?,
+            );
         }
         let limit = u64::from(gpu.info.limits.max_storage_buffer_range);
         if let Some((name, buffer)) = buffers.iter().find(|(_, b)| b.size > limit) {
@@ -177,17 +237,25 @@ impl SceneGpu {
                 anisotropic: true,
             },
         )?);
-        let names =
-            crate::graph::externals::EXTERNALS.iter().map(|e| e.name).filter(|n| n.starts_with("materialTexture"));
+        let names = crate::graph::externals::EXTERNALS
+            .iter()
+            .map(|e| e.name)
+            .filter(|n| n.starts_with("materialTexture"));
         Ok(SceneGpu {
             resources: SceneResources {
                 buffers,
-                textures: names.zip(textures.views).chain([("skyTexture", sky.view)]).collect(),
+                textures: names
+                    .zip(textures.views)
+                    .chain([("skyTexture", sky.view)])
+                    .collect(),
                 sampler,
                 geometry: Geometry {
                     indices: index_buffer,
                     commands: command_buffer,
-                    draws: draws.iter().map(|d| (d.first_index, d.index_count)).collect(),
+                    draws: draws
+                        .iter()
+                        .map(|d| (d.first_index, d.index_count))
+                        .collect(),
                     opaque: count(opaque),
                 },
                 constants: attributes::constants(scene, &colored),
@@ -225,27 +293,48 @@ impl SceneGpu {
         let info = lighting.inform(self.info);
         let (light_blocks, shadow_blocks) = lighting.blocks(bounds, origin);
         // Vertices that move are the other program's own too.
-        let posed = (!scene.deformers.is_empty()).then(|| vertices(scene, &scene.posed_meshes(0.0)));
+        let posed =
+            (!scene.deformers.is_empty()).then(|| vertices(scene, &scene.posed_meshes(0.0)));
         if let Some((positions, attributes, ..)) = &posed {
             let shape = [
-                ("positions", upload.buffer("positions", bytemuck::cast_slice(positions), storage)?),
-                ("attributes", upload.buffer("attributes", bytemuck::cast_slice(attributes), storage)?),
+                (
+                    "positions",
+                    upload.buffer("positions", bytemuck::cast_slice(positions), storage)?,
+                ),
+                (
+                    "attributes",
+                    upload.buffer("attributes", bytemuck::cast_slice(attributes), storage)?,
+                ),
             ];
             resources.buffers.extend(shape);
         }
         let own = [
             ("instances", instances.clone()),
             ("camera", camera.clone()),
-            ("sceneInfo", upload.buffer("sceneInfo", bytemuck::bytes_of(&info), uniform)?),
-            ("lights", upload.buffer("lights", bytemuck::cast_slice(&light_blocks), storage)?),
-            ("shadowViews", upload.buffer("shadowViews", bytemuck::cast_slice(&shadow_blocks), storage)?),
-            ("emitters", upload.buffer("emitters", &self.emitters.buffer(&sent, None), storage)?),
+            (
+                "sceneInfo",
+                upload.buffer("sceneInfo", bytemuck::bytes_of(&info), uniform)?,
+            ),
+            (
+                "lights",
+                upload.buffer("lights", bytemuck::cast_slice(&light_blocks), storage)?,
+            ),
+            (
+                "shadowViews",
+                upload.buffer("shadowViews", bytemuck::cast_slice(&shadow_blocks), storage)?,
+            ),
+            (
+                "emitters",
+                upload.buffer("emitters", &self.emitters.buffer(&sent, None), storage)?,
+            ),
         ];
         resources.buffers.extend(own);
         if self.has_rays() {
             // The other program moves its own instances, and the hierarchy with them.
             let found = scene_hierarchy(scene, &self.emitters, &sent);
-            resources.buffers.extend(ray_buffers(&mut upload, found, &info)?);
+            resources
+                .buffers
+                .extend(ray_buffers(&mut upload, found, &info)?);
         }
         upload.finish()?;
         let (emitters, scene) = (self.emitters.clone(), self.scene.clone());
@@ -280,7 +369,10 @@ impl SceneGpu {
             return Ok(Vec::new());
         }
         self.sent = now;
-        let mut list = vec![Update::all(&self.instances, bytemuck::cast_slice(&self.sent).to_vec())];
+        let mut list = vec![Update::all(
+            &self.instances,
+            bytemuck::cast_slice(&self.sent).to_vec(),
+        )];
         if deforms {
             self.posed_at = time as f32;
         }
@@ -288,16 +380,26 @@ impl SceneGpu {
         if deforms {
             list.extend(self.deformed(&scene, &posed));
         }
-        let rays = [self.resources.buffers.get("bvhNodes"), self.resources.buffers.get("bvhTriangles")];
-        let emitters = self.resources.buffers.get("emitters").filter(|_| self.emitters.move_in(&scene));
+        let rays = [
+            self.resources.buffers.get("bvhNodes"),
+            self.resources.buffers.get("bvhTriangles"),
+        ];
+        let emitters = self
+            .resources
+            .buffers
+            .get("emitters")
+            .filter(|_| self.emitters.move_in(&scene));
         // Emitters of rigid bodies need no vertices: these are all of the scene's.
         if rays[0].is_none() && (emitters.is_none() || scene.deformers.is_empty()) {
-            list.extend(emitters.map(|buffer| Update::all(buffer, self.emitters.buffer(&self.sent, None))));
+            list.extend(
+                emitters.map(|buffer| Update::all(buffer, self.emitters.buffer(&self.sent, None))),
+            );
             return Ok(list);
         }
         let (positions, _, indices, first_index) = vertices(&scene, &posed);
         if let Some(buffer) = emitters {
-            let moved = (!scene.deformers.is_empty()).then_some((positions.as_slice(), indices.as_slice()));
+            let moved =
+                (!scene.deformers.is_empty()).then_some((positions.as_slice(), indices.as_slice()));
             list.push(Update::all(buffer, self.emitters.buffer(&self.sent, moved)));
         }
         if let [Some(nodes), Some(triangles)] = rays {
@@ -326,17 +428,32 @@ impl SceneGpu {
         }));
         let parts = scene.deformers.iter().flat_map(|deformer| {
             let start = starts.get(deformer.mesh as usize).copied().unwrap_or(0);
-            let posed = posed.get(deformer.mesh as usize).map(|vertices| &**vertices).unwrap_or_default();
+            let posed = posed
+                .get(deformer.mesh as usize)
+                .map(|vertices| &**vertices)
+                .unwrap_or_default();
             let positions: Vec<[f32; 3]> = posed.iter().map(|v| v.position).collect();
             let attributes: Vec<Attributes> = posed.iter().map(attributes::of).collect();
             [
-                ("positions", start * size_of::<[f32; 3]>(), bytemuck::cast_slice(&positions).to_vec()),
-                ("attributes", start * size_of::<Attributes>(), bytemuck::cast_slice(&attributes).to_vec()),
+                (
+                    "positions",
+                    start * size_of::<[f32; 3]>(),
+                    bytemuck::cast_slice(&positions).to_vec(),
+                ),
+                (
+                    "attributes",
+                    start * size_of::<Attributes>(),
+                    bytemuck::cast_slice(&attributes).to_vec(),
+                ),
             ]
         });
         let update = |(name, at, bytes): (&str, usize, Vec<u8>)| {
             let buffer = self.resources.buffers.get(name)?.clone();
-            Some(Update { buffer, at: Some(at as u64), bytes })
+            Some(Update {
+                buffer,
+                at: Some(at as u64),
+                bytes,
+            })
         };
         parts.filter_map(update).collect()
     }
@@ -371,7 +488,10 @@ impl SceneGpu {
             ("sceneInfo", bytemuck::bytes_of(&self.info)),
         ];
         let buffer = |name: &str| self.resources.buffers.get(name).cloned();
-        contents.iter().filter_map(|(name, bytes)| Some(Update::all(&buffer(name)?, bytes.to_vec()))).collect()
+        contents
+            .iter()
+            .filter_map(|(name, bytes)| Some(Update::all(&buffer(name)?, bytes.to_vec())))
+            .collect()
     }
 
     /// The block `sceneInfo` as it is.
@@ -383,17 +503,30 @@ impl SceneGpu {
 
 /// The hierarchy over triangles in the pose of these instances.
 fn hierarchy(soup: &Soup<'_>, emitters: &Emitters, instances: &[InstanceBlock]) -> bvh::Hierarchy {
-    let model = |i: u32| instances.get(i as usize).map_or(Mat4::IDENTITY, |b| Mat4::from_cols_array(&b.model));
+    let model = |i: u32| {
+        instances
+            .get(i as usize)
+            .map_or(Mat4::IDENTITY, |b| Mat4::from_cols_array(&b.model))
+    };
     bvh::build(soup, emitters, &model)
 }
 
 /// [`hierarchy`] over all triangles of a scene that was uploaded before, at 0 s.
-fn scene_hierarchy(scene: &Scene, emitters: &Emitters, instances: &[InstanceBlock]) -> bvh::Hierarchy {
+fn scene_hierarchy(
+    scene: &Scene,
+    emitters: &Emitters,
+    instances: &[InstanceBlock],
+) -> bvh::Hierarchy {
     let (positions, _, indices, first_index) = vertices(scene, &scene.posed_meshes(0.0));
     let draws = draws(scene, &first_index);
     let masked = |d: &DrawBlock| is_masked(scene, d);
-    let soup =
-        Soup { positions: &positions, indices: &indices, draws: &draws, first_index: &first_index, masked: &masked };
+    let soup = Soup {
+        positions: &positions,
+        indices: &indices,
+        draws: &draws,
+        first_index: &first_index,
+        masked: &masked,
+    };
     hierarchy(&soup, emitters, instances)
 }
 
@@ -404,24 +537,37 @@ fn ray_buffers(
     info: &SceneInfoBlock,
 ) -> Result<[(&'static str, Arc<Buffer>); 2]> {
     let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
-    let bvh::Hierarchy { mut nodes, mut triangles } = found;
+    let bvh::Hierarchy {
+        mut nodes,
+        mut triangles,
+    } = found;
     let (most_nodes, most_triangles) = bvh::capacity(info.triangle_count as usize);
     nodes.resize(nodes.len().max(most_nodes), 0);
     triangles.resize(triangles.len().max(most_triangles), 0);
     Ok([
         ("bvhNodes", upload.buffer("bvhNodes", &nodes, storage)?),
-        ("bvhTriangles", upload.buffer("bvhTriangles", &triangles, storage)?),
+        (
+            "bvhTriangles",
+            upload.buffer("bvhTriangles", &triangles, storage)?,
+        ),
     ])
 }
 
 fn is_masked(scene: &Scene, draw: &DrawBlock) -> bool {
-    scene.materials.get(draw.material as usize).is_some_and(|m| m.alpha_cutoff > 0.0)
+    scene
+        .materials
+        .get(draw.material as usize)
+        .is_some_and(|m| m.alpha_cutoff > 0.0)
 }
 
 /// Positions (3 floats), attributes (3 vec4), indices of all meshes one after another with these vertices, and each mesh's
 /// first index.
-fn vertices(scene: &Scene, posed: &[Cow<'_, [Vertex]>]) -> (Vec<f32>, Vec<Attributes>, Vec<u32>, Vec<u32>) {
-    let (mut positions, mut attributes, mut indices, mut first) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+fn vertices(
+    scene: &Scene,
+    posed: &[Cow<'_, [Vertex]>],
+) -> (Vec<f32>, Vec<Attributes>, Vec<u32>, Vec<u32>) {
+    let (mut positions, mut attributes, mut indices, mut first) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (mesh, vertices) in scene.meshes.iter().zip(posed) {
         let base = u32::try_from(positions.len() / 3).unwrap_or(u32::MAX);
         first.push(u32::try_from(indices.len()).unwrap_or(u32::MAX));
@@ -436,7 +582,9 @@ fn vertices(scene: &Scene, posed: &[Cow<'_, [Vertex]>]) -> (Vec<f32>, Vec<Attrib
 fn draws(scene: &Scene, first_index: &[u32]) -> Vec<DrawBlock> {
     let mut list = Vec::new();
     for (i, instance) in (0u32..).zip(&scene.instances) {
-        let Some(mesh) = scene.meshes.get(instance.mesh as usize) else { continue };
+        let Some(mesh) = scene.meshes.get(instance.mesh as usize) else {
+            continue;
+        };
         for submesh in mesh.submeshes.iter().filter(|p| p.index_count > 0) {
             list.push(DrawBlock {
                 instance: i,
@@ -452,14 +600,26 @@ fn draws(scene: &Scene, first_index: &[u32]) -> Vec<DrawBlock> {
 
 /// (draw, first of its indices) of every triangle, draw by draw. Neighbours in space are neighbours in the list, and the order
 /// is of what the triangles hold alone: where two are in one place it decides which is seen.
-fn triangles(draws: &[DrawBlock], indices: &[u32], positions: &[f32], attributes: &[Attributes]) -> Vec<[u32; 2]> {
-    let position = |i: u32| -> [f32; 3] { std::array::from_fn(|k| positions[3 * indices[i as usize] as usize + k]) };
+fn triangles(
+    draws: &[DrawBlock],
+    indices: &[u32],
+    positions: &[f32],
+    attributes: &[Attributes],
+) -> Vec<[u32; 2]> {
+    let position = |i: u32| -> [f32; 3] {
+        std::array::from_fn(|k| positions[3 * indices[i as usize] as usize + k])
+    };
     let content = |first: u32| -> [[u32; 15]; 3] {
         std::array::from_fn(|k| {
             let vertex = indices[first as usize + k] as usize;
-            let numbers = positions[3 * vertex..3 * vertex + 3].iter().chain(&attributes[vertex]);
+            let numbers = positions[3 * vertex..3 * vertex + 3]
+                .iter()
+                .chain(&attributes[vertex]);
             let mut words = [0; 15];
-            words.iter_mut().zip(numbers).for_each(|(w, n)| *w = n.to_bits());
+            words
+                .iter_mut()
+                .zip(numbers)
+                .for_each(|(w, n)| *w = n.to_bits());
             words
         })
     };
@@ -467,21 +627,25 @@ fn triangles(draws: &[DrawBlock], indices: &[u32], positions: &[f32], attributes
     let mut sorted: HashMap<(u32, u32), Vec<u32>> = HashMap::new();
     let mut list = Vec::new();
     for (number, draw) in (0u32..).zip(draws) {
-        let order = sorted.entry((draw.first_index, draw.index_count)).or_insert_with(|| {
-            let firsts = (draw.first_index..draw.first_index + draw.index_count).step_by(3);
-            let middle = |first: u32| {
-                let [a, b, c] = [0, 1, 2].map(|k| Vec3::from(position(first + k)));
-                (a + b + c) / 3.0
-            };
-            let (low, high) = firsts
-                .clone()
-                .map(middle)
-                .fold((Vec3::splat(f32::MAX), Vec3::splat(f32::MIN)), |(low, high), p| (low.min(p), high.max(p)));
-            let scale = 1023.0 / (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
-            let mut keyed: Vec<(u32, u32)> = firsts.map(|f| (morton((middle(f) - low) * scale), f)).collect();
-            keyed.sort_by(|a, b| a.0.cmp(&b.0).then_with(|| content(a.1).cmp(&content(b.1))));
-            keyed.into_iter().map(|(_, first)| first).collect()
-        });
+        let order = sorted
+            .entry((draw.first_index, draw.index_count))
+            .or_insert_with(|| {
+                let firsts = (draw.first_index..draw.first_index + draw.index_count).step_by(3);
+                let middle = |first: u32| {
+                    let [a, b, c] = [0, 1, 2].map(|k| Vec3::from(position(first + k)));
+                    (a + b + c) / 3.0
+                };
+                let (low, high) = firsts.clone().map(middle).fold(
+                    (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN)),
+                    |(low, high), p| (low.min(p), high.max(p)),
+                );
+                let scale = 1023.0 / (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
+                let mut keyed: Vec<(u32, u32)> = firsts
+                    .map(|f| (morton((middle(f) - low) * scale), f))
+                    .collect();
+                keyed.sort_by(|a, b| a.0.cmp(&b.0).then_with(|| content(a.1).cmp(&content(b.1))));
+                keyed.into_iter().map(|(_, first)| first).collect()
+            });
         list.extend(order.iter().map(|first| [number, *first]));
     }
     list
@@ -507,9 +671,15 @@ fn material(
         roughness: m.roughness,
         alpha_cutoff: m.alpha_cutoff,
         normal_scale: m.normal_scale,
-        flags: u32::from(m.two_sided) | u32::from(colored) << 1 | u32::from(tinted) << 2 | dielectric << 8,
+        flags: u32::from(m.two_sided)
+            | u32::from(colored) << 1
+            | u32::from(tinted) << 2
+            | dielectric << 8,
         base_color_texture: handle(m.base_color_texture, m.lookups.base_color),
-        metallic_roughness_texture: handle(m.metallic_roughness_texture, m.lookups.metallic_roughness),
+        metallic_roughness_texture: handle(
+            m.metallic_roughness_texture,
+            m.lookups.metallic_roughness,
+        ),
         normal_texture: handle(m.normal_texture, m.lookups.normal),
         emission_texture: handle(m.emission_texture, m.lookups.emission),
     }
@@ -524,15 +694,26 @@ fn instances(
     deforms: bool,
 ) -> Vec<InstanceBlock> {
     let frames = scene.mover_frames(time);
-    let deforming: HashSet<u32> = scene.deformers.iter().filter(|_| deforms).map(|d| d.mesh).collect();
+    let deforming: HashSet<u32> = scene
+        .deformers
+        .iter()
+        .filter(|_| deforms)
+        .map(|d| d.mesh)
+        .collect();
     let block = |(i, instance): (usize, &Instance)| {
         let mut model = in_world(&frames, instance.mover, instance.transform);
         model.w_axis -= origin.extend(0.0);
-        let before = previous.and_then(|p| p.get(i)).map_or(model.to_cols_array(), |p| p.model);
+        let before = previous
+            .and_then(|p| p.get(i))
+            .map_or(model.to_cols_array(), |p| p.model);
         let normal = Mat4::from_mat3(glam::Mat3::from_mat4(model).inverse().transpose());
         InstanceBlock {
             model: model.to_cols_array(),
-            previous_model: if deforming.contains(&instance.mesh) { [0.0; 16] } else { before },
+            previous_model: if deforming.contains(&instance.mesh) {
+                [0.0; 16]
+            } else {
+                before
+            },
             normal_matrix: normal.to_cols_array(),
         }
     };

@@ -51,7 +51,11 @@ impl Session {
     /// Parts for a session that renders at the same time: pipelines, geometry and textures of the scene.
     pub fn share(&self) -> ReusableParts {
         let all = self.reusable_parts();
-        ReusableParts { parts: all.parts.pipelines_only(), shared: true, ..all }
+        ReusableParts {
+            parts: all.parts.pipelines_only(),
+            shared: true,
+            ..all
+        }
     }
 
     /// Takes the place of the session that this one was made from, at a frame's border: textures keep their content,
@@ -85,7 +89,8 @@ impl Session {
         if !runs(&set).are_linked(&self.graph, &self.linked) {
             return Ok(false);
         }
-        let mut plan = plan(&set, &self.linked, &self.wanted, &lab.gpu.info).map_err(LabError::Input)?;
+        let mut plan =
+            plan(&set, &self.linked, &self.wanted, &lab.gpu.info).map_err(LabError::Input)?;
         // No resource or pipeline depends on when passes rest or converge.
         let settling = std::mem::replace(&mut plan.settling, self.program.plan.settling.clone());
         let convergence = std::mem::replace(&mut plan.convergence, self.program.plan.convergence);
@@ -136,13 +141,21 @@ impl Session {
     pub fn frame(&mut self, delta: f64) -> Result<Option<FrameTimes>, LabError> {
         let mut updates = self.scene_gpu.updates(self.time, self.frame == 0)?;
         updates.append(&mut self.light_updates);
-        self.still_frames =
-            if updates.is_empty() && self.sent_params { self.still_frames.saturating_add(1) } else { 0 };
+        self.still_frames = if updates.is_empty() && self.sent_params {
+            self.still_frames.saturating_add(1)
+        } else {
+            0
+        };
         let frames = (self.frame, self.still_frames);
-        let camera = self.viewpoint.uniform(self.scene_gpu.origin, self.size, self.time, frames, delta);
+        let camera =
+            self.viewpoint
+                .uniform(self.scene_gpu.origin, self.size, self.time, frames, delta);
         updates.push(Update::all(&self.scene_gpu.camera, camera));
         if !self.sent_params {
-            updates.push(Update::all(&self.program.params_buffer(), self.params.uniform_bytes(&self.values)));
+            updates.push(Update::all(
+                &self.program.params_buffer(),
+                self.params.uniform_bytes(&self.values),
+            ));
             // So that it is known which part of it lights change; they may have sent it already.
             if let Some(info) = self.scene_gpu.info() {
                 updates.retain(|u| !Arc::ptr_eq(&u.buffer, &info.buffer));
@@ -160,7 +173,8 @@ impl Session {
     pub fn set_lights(&mut self, lights: &[Light], sky: Vec3) -> bool {
         let same = lights.len() == self.scene.lights.len()
             && view::shadow_view_count(lights) == view::shadow_view_count(&self.scene.lights)
-            && view::directional_view_count(lights) == view::directional_view_count(&self.scene.lights);
+            && view::directional_view_count(lights)
+                == view::directional_view_count(&self.scene.lights);
         if same {
             self.light_updates = self.scene_gpu.set_lights(lights, sky);
         }
@@ -211,15 +225,21 @@ impl Session {
         // Checks of one buffer share one reading of it: each waits for the device.
         let mut read = BTreeMap::new();
         for check in self.graph.checks.iter().map(|c| &c.value) {
-            let Some(buffer) = self.graph.buffer(&check.field.value.buffer) else { continue };
+            let Some(buffer) = self.graph.buffer(&check.field.value.buffer) else {
+                continue;
+            };
             // Mistakes were told with the shaders; what none of them declares none of them writes.
-            let Ok(Some(word)) = layouts.check(&check.field) else { continue };
+            let Ok(Some(word)) = layouts.check(&check.field) else {
+                continue;
+            };
             let bytes = match read.entry(buffer) {
                 Entry::Occupied(entry) => entry.into_mut(),
                 Entry::Vacant(entry) => entry.insert(self.program.read_buffer(buffer)?),
             };
             let start = word as usize * 4;
-            let value = bytes.get(start..start + 4).map_or(0, |b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]]));
+            let value = bytes
+                .get(start..start + 4)
+                .map_or(0, |b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]]));
             if value != 0 {
                 failed.push(format!("{} ({value})", check.message));
             }
@@ -240,9 +260,21 @@ impl Session {
     ///
     /// # Errors
     /// As [`Session::texels`].
-    pub fn slice(&mut self, name: &str, mip: u32, layer: u32, axis: usize, slice: u32) -> Result<Texels, LabError> {
-        let plan = self.graph.texture(name).map(|i| &self.program.plan.textures[i]);
-        let Some(plan) = plan.filter(|p| p.volume) else { return self.texels(name, mip, layer) };
+    pub fn slice(
+        &mut self,
+        name: &str,
+        mip: u32,
+        layer: u32,
+        axis: usize,
+        slice: u32,
+    ) -> Result<Texels, LabError> {
+        let plan = self
+            .graph
+            .texture(name)
+            .map(|i| &self.program.plan.textures[i]);
+        let Some(plan) = plan.filter(|p| p.volume) else {
+            return self.texels(name, mip, layer);
+        };
         let whole = plan.mip_extent(mip);
         let axis = axis.min(2);
         let (mut first, mut extent) = ([0; 3], whole);
@@ -265,7 +297,10 @@ impl Session {
         layer: u32,
         part: Option<([u32; 3], [u32; 3])>,
     ) -> Result<Texels, LabError> {
-        let index = self.graph.texture(name).ok_or_else(|| no_texture(&self.graph, name))?;
+        let index = self
+            .graph
+            .texture(name)
+            .ok_or_else(|| no_texture(&self.graph, name))?;
         let plan = &self.program.plan.textures[index];
         if plan.usage.is_empty() {
             return Err(LabError::Request(format!(
@@ -284,7 +319,11 @@ impl Session {
         }
         let extent = part.map_or(plan.mip_extent(mip), |p| p.1);
         let format = plan.format;
-        Ok(Texels { extent, format, bytes: self.program.read_texture(index, mip, layer, part)? })
+        Ok(Texels {
+            extent,
+            format,
+            bytes: self.program.read_texture(index, mip, layer, part)?,
+        })
     }
 
     /// Content of a buffer of the graph, empty while no pass uses it.

@@ -23,13 +23,20 @@ impl Texels {
             return bytemuck::pod_collect_to_vec(&self.bytes);
         }
         let bytes = f.bytes as usize;
-        self.bytes.chunks_exact(bytes).map(|t| decode(f.name, f.channels, f.count, t)).collect()
+        self.bytes
+            .chunks_exact(bytes)
+            .map(|t| decode(f.name, f.channels, f.count, t))
+            .collect()
     }
 
     /// Linear RGB; a texture of one channel is grey.
     pub fn linear(&self) -> Linear {
         let grey = self.format.count == 1;
-        let rgb = self.floats().iter().map(|t| if grey { [t[0]; 3] } else { [t[0], t[1], t[2]] }).collect();
+        let rgb = self
+            .floats()
+            .iter()
+            .map(|t| if grey { [t[0]; 3] } else { [t[0], t[1], t[2]] })
+            .collect();
         Linear::radiance(self.flat_size(), rgb)
     }
 

@@ -16,7 +16,10 @@ pub struct Viewpoint {
 impl Viewpoint {
     /// A camera of a scene.
     pub fn new(camera: &Camera) -> Viewpoint {
-        Viewpoint { camera: *camera, previous: None }
+        Viewpoint {
+            camera: *camera,
+            previous: None,
+        }
     }
 
     /// A camera written out in an experiment; a near plane that it leaves out is from the scene's size.
@@ -52,15 +55,21 @@ impl Viewpoint {
         let eye = c.eye - origin;
         let direction = (c.target - c.eye).try_normalize().unwrap_or(Vec3::NEG_Z);
         let side = direction.cross(c.up);
-        let up =
-            if side.length() < 1e-4 { direction.any_orthonormal_vector() } else { side.cross(direction).normalize() };
+        let up = if side.length() < 1e-4 {
+            direction.any_orthonormal_vector()
+        } else {
+            side.cross(direction).normalize()
+        };
         let view = glam::camera::rh::view::look_to_mat4(eye, direction, up);
         let aspect = size.0 as f32 / size.1 as f32;
         let fov_y = c.fov_y.clamp(1.0, 170.0).to_radians();
         // Reversed depth: 1 at the near plane, 0 infinitely far away. Floats are as precise near 0 as it takes.
         let projection = vulkan::perspective_infinite_reverse(fov_y, aspect, c.near);
         let view_projection = projection * view;
-        let previous = self.previous.replace((view_projection, eye)).unwrap_or((view_projection, eye));
+        let previous = self
+            .previous
+            .replace((view_projection, eye))
+            .unwrap_or((view_projection, eye));
         bytemuck::bytes_of(&CameraBlock {
             view: view.to_cols_array(),
             projection: projection.to_cols_array(),
@@ -91,7 +100,9 @@ fn camera(placed: &PlacedCamera, (low, high): (Vec3, Vec3)) -> Camera {
         target: placed.target.into(),
         up: placed.up.into(),
         fov_y: placed.fov_y,
-        near: placed.near.unwrap_or(defaults::near_plane((high - low).length())),
+        near: placed
+            .near
+            .unwrap_or(defaults::near_plane((high - low).length())),
         far: placed.far.unwrap_or(f32::INFINITY),
     }
 }
@@ -106,7 +117,10 @@ pub(super) fn lights(
     let bounds = (low - origin, high - origin);
     let (mut blocks, mut views) = (Vec::new(), Vec::new());
     for (number, light) in (0u32..).zip(lights) {
-        let light = &Light { position: light.position - origin, ..light.clone() };
+        let light = &Light {
+            position: light.position - origin,
+            ..light.clone()
+        };
         let first = i32::try_from(views.len()).unwrap_or(i32::MAX);
         let (kind, inner, outer) = match light.kind {
             LightKind::Directional => (0, 0.0, 0.0),
@@ -148,12 +162,20 @@ fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<Sh
     };
     let look = |eye: Vec3, direction: Vec3| {
         let direction = direction.try_normalize().unwrap_or(Vec3::NEG_Y);
-        let up = if direction.y.abs() > 0.99 { Vec3::Z } else { Vec3::Y };
+        let up = if direction.y.abs() > 0.99 {
+            Vec3::Z
+        } else {
+            Vec3::Y
+        };
         glam::camera::rh::view::look_to_mat4(eye, direction, up)
     };
     // Two centimetres, less in scenes below four metres. Smaller ones would cost maps of 16 bits their last digits.
     let near = (0.005 * (high - low).length()).clamp(1e-6, 0.02);
-    let far = corners.iter().map(|c| c.distance(light.position)).fold(2.0 * near, f32::max) * 1.01;
+    let far = corners
+        .iter()
+        .map(|c| c.distance(light.position))
+        .fold(2.0 * near, f32::max)
+        * 1.01;
     match light.kind {
         LightKind::Directional => {
             // Orthographic, fitted to the scene's bounds, so depth is linear and no texel is wasted on the outside.
@@ -165,33 +187,59 @@ fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<Sh
             }
             let margin = 0.005 * (most - least).max_element().max(0.01);
             let (least, most) = (least - margin, most + margin);
-            let projection = vulkan::orthographic(least.x, most.x, least.y, most.y, -most.z, -least.z);
+            let projection =
+                vulkan::orthographic(least.x, most.x, least.y, most.y, -most.z, -least.z);
             let size = most - least;
             vec![block(projection * view, [size.x.max(size.y), size.z, 0.0])]
         }
         LightKind::Spot { outer, .. } => {
             let angle = (2.0 * outer).clamp(0.02, 2.9);
             let projection = vulkan::perspective(angle, 1.0, near, far);
-            vec![block(projection * look(light.position, light.direction), [2.0 * (angle * 0.5).tan(), far, 1.0])]
+            vec![block(
+                projection * look(light.position, light.direction),
+                [2.0 * (angle * 0.5).tan(), far, 1.0],
+            )]
         }
-        LightKind::Point => [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z]
-            .into_iter()
-            .map(|direction| {
-                // A little more than 90 degrees, so that filtered lookups at the seams stay inside a face.
-                let angle = std::f32::consts::FRAC_PI_2 + 0.01;
-                let matrix = vulkan::perspective(angle, 1.0, near, far) * look(light.position, direction);
-                block(matrix, [2.0 * (angle * 0.5).tan(), far, 1.0])
-            })
-            .collect(),
+        LightKind::Point => [
+            Vec3::X,
+            Vec3::NEG_X,
+            Vec3::Y,
+            Vec3::NEG_Y,
+            Vec3::Z,
+            Vec3::NEG_Z,
+        ]
+        .into_iter()
+        .map(|direction| {
+            // A little more than 90 degrees, so that filtered lookups at the seams stay inside a face.
+            let angle = std::f32::consts::FRAC_PI_2 + 0.01;
+            let matrix =
+                vulkan::perspective(angle, 1.0, near, far) * look(light.position, direction);
+            block(matrix, [2.0 * (angle * 0.5).tan(), far, 1.0])
+        })
+        .collect(),
     }
 }
 
 /// How many directional lights cast shadows.
 pub fn directional_view_count(lights: &[Light]) -> u32 {
-    lights.iter().filter(|l| l.shadow && l.kind == LightKind::Directional).map(|_| 1).sum()
+    lights
+        .iter()
+        .filter(|l| l.shadow && l.kind == LightKind::Directional)
+        .map(|_| 1)
+        .sum()
 }
 
 /// How many shadow maps a scene needs: one a directional or spot light, six a point light.
 pub fn shadow_view_count(lights: &[Light]) -> u32 {
-    lights.iter().filter(|l| l.shadow).map(|l| if matches!(l.kind, LightKind::Point) { 6 } else { 1 }).sum()
+    lights
+        .iter()
+        .filter(|l| l.shadow)
+        .map(|l| {
+            if matches!(l.kind, LightKind::Point) {
+                6
+            } else {
+                1
+            }
+        })
+        .sum()
 }

@@ -49,11 +49,17 @@ impl Workspace {
         let named = std::env::var_os("CONELAB_HOME").map(PathBuf::from);
         let working = std::env::current_dir().ok();
         let program = std::env::current_exe().ok();
-        let upwards = working.iter().flat_map(|p| p.ancestors()).chain(program.iter().flat_map(|p| p.ancestors()));
+        let upwards = working
+            .iter()
+            .flat_map(|p| p.ancestors())
+            .chain(program.iter().flat_map(|p| p.ancestors()));
         let root = match &named {
             Some(path) if fits(path) => Some(path.clone()),
             Some(path) => {
-                let message = format!("CONELAB_HOME is '{}', which has no passes and shaders folders", path.display());
+                let message = format!(
+                    "CONELAB_HOME is '{}', which has no passes and shaders folders",
+                    path.display()
+                );
                 return Err(LabError::Request(message));
             }
             None => upwards.into_iter().find(|p| fits(p)).map(Path::to_path_buf),
@@ -63,20 +69,28 @@ impl Workspace {
                 "cannot find the folders passes and shaders: run it in conelab's folder, or set CONELAB_HOME".into(),
             )
         })?;
-        Ok(Workspace { root, cache: Workspace::cache() })
+        Ok(Workspace {
+            root,
+            cache: Workspace::cache(),
+        })
     }
 
     /// The folder for compiled shaders and pipelines.
     pub fn cache() -> Option<PathBuf> {
         std::env::var_os("CONELAB_CACHE")
             .map(PathBuf::from)
-            .or_else(|| std::env::var_os("XDG_CACHE_HOME").map(|p| PathBuf::from(p).join("conelab")))
+            .or_else(|| {
+                std::env::var_os("XDG_CACHE_HOME").map(|p| PathBuf::from(p).join("conelab"))
+            })
             .or_else(|| std::env::var_os("HOME").map(|p| PathBuf::from(p).join(".cache/conelab")))
     }
 
     /// Folders of graphs and shaders.
     pub fn folders(&self) -> Folders {
-        Folders { passes: self.root.join("passes"), shaders: self.root.join("shaders") }
+        Folders {
+            passes: self.root.join("passes"),
+            shaders: self.root.join("shaders"),
+        }
     }
 
     /// The file of a graph: a bare name is looked up among the graphs, a path from here, then from the program's folder.
@@ -86,8 +100,16 @@ impl Workspace {
             return given;
         }
         let bare = given.components().count() == 1;
-        let at_home = if bare { self.root.join("passes").join(&given) } else { self.root.join(&given) };
-        if bare || at_home.is_file() { at_home } else { given }
+        let at_home = if bare {
+            self.root.join("passes").join(&given)
+        } else {
+            self.root.join(&given)
+        };
+        if bare || at_home.is_file() {
+            at_home
+        } else {
+            given
+        }
     }
 
     /// Everything that is wrong with a graph and its shaders, or worth knowing, whichever option its modules are set to;
@@ -100,9 +122,19 @@ impl Workspace {
         let mut findings: Vec<Diagnostic> = Vec::new();
         let mut settings = vec![graph.params.clone()];
         for param in graph.params.offered().filter(|p| p.is_module()) {
-            for option in param.kind.options().iter().filter(|o| Value::Choice((*o).clone()) != param.default) {
+            for option in param
+                .kind
+                .options()
+                .iter()
+                .filter(|o| Value::Choice((*o).clone()) != param.default)
+            {
                 let mut params = graph.params.clone();
-                findings.extend(params.set(&param.name, option).err().map(|e| Diagnostic::error(Place::default(), e)));
+                findings.extend(
+                    params
+                        .set(&param.name, option)
+                        .err()
+                        .map(|e| Diagnostic::error(Place::default(), e)),
+                );
                 settings.push(params);
             }
         }
@@ -135,7 +167,11 @@ impl Workspace {
     pub fn load(&self, name: &str) -> Result<Loaded, Vec<Diagnostic>> {
         let graph = self.read(name)?;
         let (linked, warnings) = self.link(&graph, &Runs::all(&graph, &graph.params))?;
-        Ok(Loaded { graph, linked: Arc::new(linked), warnings })
+        Ok(Loaded {
+            graph,
+            linked: Arc::new(linked),
+            warnings,
+        })
     }
 
     /// [`Workspace::load`] of an experiment's graph.
@@ -160,7 +196,11 @@ impl Workspace {
     ) -> Result<Loaded, Vec<Diagnostic>> {
         let graph = self.read_of(experiment)?;
         let (linked, warnings) = self.link(&graph, &runs_of(&graph, experiment, scene, device))?;
-        Ok(Loaded { graph, linked: Arc::new(linked), warnings })
+        Ok(Loaded {
+            graph,
+            linked: Arc::new(linked),
+            warnings,
+        })
     }
 
     /// A graph with the shaders that an experiment runs; as it is, if it has them.
@@ -178,12 +218,20 @@ impl Workspace {
     }
 
     /// A graph with the shaders of all passes that run; as it is, if it has them.
-    pub(super) fn with_shaders(&self, loaded: &Loaded, runs: &Runs) -> Result<Loaded, Vec<Diagnostic>> {
+    pub(super) fn with_shaders(
+        &self,
+        loaded: &Loaded,
+        runs: &Runs,
+    ) -> Result<Loaded, Vec<Diagnostic>> {
         if runs.are_linked(&loaded.graph, &loaded.linked) {
             return Ok(loaded.clone());
         }
         let (linked, warnings) = self.link(&loaded.graph, runs)?;
-        Ok(Loaded { graph: loaded.graph.clone(), linked: Arc::new(linked), warnings })
+        Ok(Loaded {
+            graph: loaded.graph.clone(),
+            linked: Arc::new(linked),
+            warnings,
+        })
     }
 
     /// A graph without its shaders; the last one of that name, if its files are as they were.
@@ -209,16 +257,28 @@ impl Workspace {
                 return errors;
             }
             let located = |e: Diagnostic| {
-                let found = experiment.error_in("graph", format!("graph '{}': {}", path.display(), e.message));
+                let found = experiment.error_in(
+                    "graph",
+                    format!("graph '{}': {}", path.display(), e.message),
+                );
                 found.map_or(e.clone(), |found| found.help(e.help))
             };
             errors.into_iter().map(located).collect()
         })
     }
 
-    fn link(&self, graph: &Graph, runs: &Runs) -> Result<(Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
+    fn link(
+        &self,
+        graph: &Graph,
+        runs: &Runs,
+    ) -> Result<(Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
         let shaders = self.folders().shaders;
-        link(graph, &ShaderCompiler::new(&shaders, self.cache.as_deref()), &shaders, runs)
+        link(
+            graph,
+            &ShaderCompiler::new(&shaders, self.cache.as_deref()),
+            &shaders,
+            runs,
+        )
     }
 }
 
@@ -226,6 +286,12 @@ impl Workspace {
 fn runs_of(graph: &Graph, experiment: &Experiment, scene: &Scene, device: &DeviceInfo) -> Runs {
     params_of(graph, experiment).map_or_else(
         |_| Runs::all(graph, &graph.params),
-        |params| runs(&Evaluated::new(graph, &params, environment(scene, experiment.size, device))),
+        |params| {
+            runs(&Evaluated::new(
+                graph,
+                &params,
+                environment(scene, experiment.size, device),
+            ))
+        },
     )
 }

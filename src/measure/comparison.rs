@@ -105,9 +105,20 @@ pub struct Request<'a> {
 /// # Errors
 /// Pictures for a display beside radiance, no common part, a part that is not there, different sizes, masks of another
 /// size, or what becomes of the maps.
-pub fn compare(pictures: &[Side], reference: &Side, mut request: Request) -> Result<Comparison, MetricError> {
-    if let Some(other) = pictures.iter().find(|p| p.displayed() != reference.displayed()) {
-        let (shown, radiance) = if other.displayed() { (other, reference) } else { (reference, other) };
+pub fn compare(
+    pictures: &[Side],
+    reference: &Side,
+    mut request: Request,
+) -> Result<Comparison, MetricError> {
+    if let Some(other) = pictures
+        .iter()
+        .find(|p| p.displayed() != reference.displayed())
+    {
+        let (shown, radiance) = if other.displayed() {
+            (other, reference)
+        } else {
+            (reference, other)
+        };
         return Err(MetricError(format!(
             "'{}' was made for a display and '{}' is radiance; compare an .exr with an .exr, or a .png with a .png",
             shown.name, radiance.name
@@ -119,24 +130,37 @@ pub fn compare(pictures: &[Side], reference: &Side, mut request: Request) -> Res
     let mut parts = Vec::new();
     let mut size = (0, 0);
     for part in names {
-        let Some(expected) = reference.parts.get(&part) else { continue };
+        let Some(expected) = reference.parts.get(&part) else {
+            continue;
+        };
         let pixels = expected.rgb.len();
         if let Some(area) = areas.iter().find(|a| a.mask.len() != pixels) {
             let (w, h) = expected.size;
-            return Err(MetricError(format!("the mask '{}' does not have the pictures' size of {w}x{h}", area.name)));
+            return Err(MetricError(format!(
+                "the mask '{}' does not have the pictures' size of {w}x{h}",
+                area.name
+            )));
         }
         size = expected.size;
         let mut compared = Vec::new();
         for (i, picture) in pictures.iter().enumerate() {
-            let Some(test) = picture.parts.get(&part) else { continue };
-            let with = Compared::new(test, expected)
-                .map_err(|e| MetricError(format!("'{}' and '{}': {e}", picture.name, reference.name)))?;
+            let Some(test) = picture.parts.get(&part) else {
+                continue;
+            };
+            let with = Compared::new(test, expected).map_err(|e| {
+                MetricError(format!("'{}' and '{}': {e}", picture.name, reference.name))
+            })?;
             if let Some(take) = &mut request.maps {
                 take(i, &part, maps(&with)?)?;
             }
             compared.push(with);
         }
-        parts.push(compare_part(&part, &compared, reference.noise.get(&part).copied(), &areas));
+        parts.push(compare_part(
+            &part,
+            &compared,
+            reference.noise.get(&part).copied(),
+            &areas,
+        ));
     }
     Ok(Comparison {
         schema: SCHEMA.into(),
@@ -150,7 +174,11 @@ pub fn compare(pictures: &[Side], reference: &Side, mut request: Request) -> Res
 }
 
 /// The parts to compare: the total, then by kind and name.
-fn part_names(pictures: &[Side], reference: &Side, wanted: &[String]) -> Result<Vec<String>, MetricError> {
+fn part_names(
+    pictures: &[Side],
+    reference: &Side,
+    wanted: &[String],
+) -> Result<Vec<String>, MetricError> {
     let everywhere = |part: &&String| pictures.iter().all(|p| p.parts.contains_key(*part));
     let mut common: Vec<String> = reference.parts.keys().filter(everywhere).cloned().collect();
     common.sort_by_key(|part| (part != "total", reference.parts.get(part).map(|p| p.kind)));
@@ -167,20 +195,37 @@ fn part_names(pictures: &[Side], reference: &Side, wanted: &[String]) -> Result<
     Ok(common)
 }
 
-fn compare_part(part: &str, compared: &[Compared], noise: Option<Noise>, areas: &[Region]) -> PartComparison {
+fn compare_part(
+    part: &str,
+    compared: &[Compared],
+    noise: Option<Noise>,
+    areas: &[Region],
+) -> PartComparison {
     let region = |name: &str, share: f64, mask: Option<&[bool]>| {
         let scores: Vec<Option<Scores>> = compared.iter().map(|c| c.scores(mask)).collect();
         let better = match &scores[..] {
             [Some(a), Some(b)] => verdict::better(a, b, noise),
             _ => BTreeMap::new(),
         };
-        let within =
-            |s: &Option<Scores>| s.as_ref().is_some_and(|s| within_noise(s.get(RELMSE), noise.map(|n| n.relmse)));
+        let within = |s: &Option<Scores>| {
+            s.as_ref()
+                .is_some_and(|s| within_noise(s.get(RELMSE), noise.map(|n| n.relmse)))
+        };
         let within_noise = scores.iter().map(within).collect();
-        RegionComparison { region: name.into(), share, scores, within_noise, better }
+        RegionComparison {
+            region: name.into(),
+            share,
+            scores,
+            within_noise,
+            better,
+        }
     };
     let mut list = vec![region(FRAME, 1.0, None)];
-    list.extend(areas.iter().map(|a| region(&a.name, a.share(), Some(&a.mask))));
+    list.extend(
+        areas
+            .iter()
+            .map(|a| region(&a.name, a.share(), Some(&a.mask))),
+    );
     let exposures = compared.first().map(Compared::exposures);
     PartComparison {
         part: part.into(),

@@ -66,7 +66,10 @@ impl Point {
     /// Noise of a part's reference; 0 where it is not known.
     pub fn noise_of(&self, part: &str) -> Noise {
         let of = |list: &BTreeMap<String, f64>| list.get(part).copied().unwrap_or(0.0);
-        Noise { relmse: of(&self.noise), structure: of(&self.structure_noise) }
+        Noise {
+            relmse: of(&self.noise),
+            structure: of(&self.structure_noise),
+        }
     }
 }
 
@@ -100,16 +103,47 @@ pub fn measure(
     scored: Scored,
 ) -> Result<Measured, LabError> {
     let loaded = warm.graph(&lab.home, &experiment.graph)?.clone();
-    let wanted: Vec<String> =
-        parts_of(&loaded.graph).into_iter().filter(|p| scored.has(&p.name)).map(|p| p.texture).collect();
-    let together = !references.is_empty() && wanted.iter().all(|texture| loaded.graph.hdr.as_ref() == Some(texture));
+    let wanted: Vec<String> = parts_of(&loaded.graph)
+        .into_iter()
+        .filter(|p| scored.has(&p.name))
+        .map(|p| p.texture)
+        .collect();
+    let together = !references.is_empty()
+        && wanted
+            .iter()
+            .all(|texture| loaded.graph.hdr.as_ref() == Some(texture));
     let extra = if together { &wanted[..] } else { &[] };
-    let Timed { mut session, times, warmup } =
-        timed(lab, &loaded, experiment, scene, frames, extra, warm.timed.as_ref())?;
+    let Timed {
+        mut session,
+        times,
+        warmup,
+    } = timed(
+        lab,
+        &loaded,
+        experiment,
+        scene,
+        frames,
+        extra,
+        warm.timed.as_ref(),
+    )?;
     let warnings = session.failed_checks()?;
-    let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, warmup, warnings);
-    let picture = loaded.graph.output.as_ref().map(|name| session.texels(name, 0, 0)).transpose()?;
-    let picture = picture.map(|texels| pictures::thumbnail(&texels)).transpose()?;
+    let stats = stats::collect(
+        &lab.gpu.info,
+        &experiment.name,
+        &session,
+        &times,
+        warmup,
+        warnings,
+    );
+    let picture = loaded
+        .graph
+        .output
+        .as_ref()
+        .map(|name| session.texels(name, 0, 0))
+        .transpose()?;
+    let picture = picture
+        .map(|texels| pictures::thumbnail(&texels))
+        .transpose()?;
     warm.timed = Some(session.share());
     let parts = match references {
         [] => BTreeMap::new(),
@@ -129,21 +163,33 @@ pub fn measure(
     let (mut error_map, mut shown) = (None, None);
     for (number, (bounces, reference)) in references.iter().enumerate() {
         for (part, light) in &parts {
-            let Some(expected) = reference.parts.get(part).filter(|_| number == 0 || part == "total") else {
+            let Some(expected) = reference
+                .parts
+                .get(part)
+                .filter(|_| number == 0 || part == "total")
+            else {
                 continue;
             };
-            let wrong = |why: &str| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
+            let wrong = |why: &str| {
+                LabError::Request(format!("the part '{part}' cannot be compared: {why}"))
+            };
             let compared = Compared::new(light, &expected.mean).map_err(|e| wrong(&e.0))?;
             let scores = match scored {
                 Scored::All => compared.scores(None),
                 Scored::One(_, metric) => compared.scores_by(metric),
             };
             let scores = scores.ok_or_else(|| wrong("no pixel is a number in both pictures"))?;
-            let name = if number == 0 { part.clone() } else { format!("{part}, {bounces} bounces") };
+            let name = if number == 0 {
+                part.clone()
+            } else {
+                format!("{part}, {bounces} bounces")
+            };
             point.scores.insert(name.clone(), scores);
             // Of black references there is none, and JSON has no number for that.
             if expected.noise.structure.is_finite() {
-                point.structure_noise.insert(name.clone(), expected.noise.structure);
+                point
+                    .structure_noise
+                    .insert(name.clone(), expected.noise.structure);
             }
             point.noise.insert(name, expected.noise.relmse);
             if number == 0 && part == "total" {
@@ -153,7 +199,12 @@ pub fn measure(
         }
         point.references.insert(*bounces, reference.samples);
     }
-    Ok(Measured { point, picture, error_map, reference: shown })
+    Ok(Measured {
+        point,
+        picture,
+        error_map,
+        reference: shown,
+    })
 }
 
 /// An experiment that has run.
@@ -194,7 +245,11 @@ pub fn timed(
     times.extend(session.finish()?);
     // The first of them come from the warm-up: frames are in flight.
     let times = times.split_off(times.len().saturating_sub(frames.count));
-    Ok(Timed { session, times, warmup })
+    Ok(Timed {
+        session,
+        times,
+        warmup,
+    })
 }
 
 /// Parts of an experiment's light, by the graph's names for them, from frames that make nothing else.
@@ -208,9 +263,18 @@ fn parts_alone(
     wanted: Vec<String>,
 ) -> Result<BTreeMap<String, Linear>, LabError> {
     // The timed session's scene is on the device already: another upload of it would cost memory.
-    let reuse = warm.scored.as_ref().filter(|s| Arc::ptr_eq(&s.0, scene)).map(|s| &s.1).or(warm.timed.as_ref());
+    let reuse = warm
+        .scored
+        .as_ref()
+        .filter(|s| Arc::ptr_eq(&s.0, scene))
+        .map(|s| &s.1)
+        .or(warm.timed.as_ref());
     let mut session = lab.build(experiment, loaded, scene.clone(), wanted, reuse)?;
-    session.run(session.converging_frames().max(frames.warmup + frames.count))?;
+    session.run(
+        session
+            .converging_frames()
+            .max(frames.warmup + frames.count),
+    )?;
     let out = session.parts()?;
     warm.scored = Some((scene.clone(), session.share()));
     Ok(out)

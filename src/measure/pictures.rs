@@ -21,15 +21,25 @@ pub(super) fn thumbnail(texels: &Texels) -> Result<Vec<u8>, LabError> {
 
 /// Radiance as graphs display it by default, for the reference beside their pictures. What is no number is black.
 pub(super) fn displayed(light: &Linear) -> Result<Vec<u8>, LabError> {
-    let byte = |v: f32| (display(Kind::Radiance, if v.is_finite() { v } else { 0.0 }) * 255.0 + 0.5) as u8;
-    small_jpeg(RgbImage::from_raw(light.size.0, light.size.1, light.rgb.iter().flatten().map(|v| byte(*v)).collect()))
+    let byte =
+        |v: f32| (display(Kind::Radiance, if v.is_finite() { v } else { 0.0 }) * 255.0 + 0.5) as u8;
+    small_jpeg(RgbImage::from_raw(
+        light.size.0,
+        light.size.1,
+        light.rgb.iter().flatten().map(|v| byte(*v)).collect(),
+    ))
 }
 
 /// The root of each pixel's relative squared error, |x - r| / sqrt(r^2 + 0.01), mean over channels: black at 0, through
 /// red and yellow to white at 1 and above.
 pub(super) fn error_map(test: &Linear, reference: &Linear) -> Result<Vec<u8>, LabError> {
     let heat = test.rgb.iter().zip(&reference.rgb).flat_map(|(x, r)| {
-        let squares = x.iter().zip(r).map(|(x, r)| (x - r).powi(2) / (r * r + 0.01)).sum::<f32>() / 3.0;
+        let squares = x
+            .iter()
+            .zip(r)
+            .map(|(x, r)| (x - r).powi(2) / (r * r + 0.01))
+            .sum::<f32>()
+            / 3.0;
         let e = squares.sqrt() * 3.0;
         [e, e - 1.0, e - 2.0].map(|v| (v.clamp(0.0, 1.0) * 255.0) as u8)
     });
@@ -44,6 +54,8 @@ fn small_jpeg(picture: Option<ImageBuffer<Rgb<u8>, Vec<u8>>>) -> Result<Vec<u8>,
     let side = |n: u32| ((f64::from(n) * scale).round() as u32).max(1);
     let small = resize(&picture, side(width), side(height), FilterType::Triangle);
     let mut out = Vec::new();
-    small.write_with_encoder(JpegEncoder::new_with_quality(&mut out, QUALITY)).map_err(|e| failed(e.to_string()))?;
+    small
+        .write_with_encoder(JpegEncoder::new_with_quality(&mut out, QUALITY))
+        .map_err(|e| failed(e.to_string()))?;
     Ok(out)
 }

@@ -46,7 +46,9 @@ impl Warm {
             let loaded = home.load(name).map_err(LabError::Input)?;
             self.loaded.insert(name.to_string(), loaded);
         }
-        self.loaded.get(name).ok_or_else(|| LabError::Request(format!("graph '{name}' is gone")))
+        self.loaded
+            .get(name)
+            .ok_or_else(|| LabError::Request(format!("graph '{name}' is gone")))
     }
 
     /// Takes a graph that was compiled elsewhere.
@@ -78,8 +80,13 @@ impl Warm {
     ) -> Result<Option<Arc<Reference>>, LabError> {
         // Of the parameters it depends on those that its graph has too.
         let shared = self.graph(&lab.home, GRAPH)?.graph.params.clone();
-        let params = experiment.params_over(&self.graph(&lab.home, &experiment.graph)?.graph.params)?;
-        let values = params.list.iter().zip(&params.values).filter(|(p, _)| shared.index(&p.name).is_some());
+        let params =
+            experiment.params_over(&self.graph(&lab.home, &experiment.graph)?.graph.params)?;
+        let values = params
+            .list
+            .iter()
+            .zip(&params.values)
+            .filter(|(p, _)| shared.index(&p.name).is_some());
         let values: Vec<String> = values.map(|(p, v)| format!("{}={v}", p.name)).collect();
         let key = format!("{subject} {wanted:?} {}", values.join(" "));
         if let Some(found) = self.references.get(&key) {
@@ -96,7 +103,10 @@ impl Warm {
             (Some(goal), Some(seed)) => {
                 let mut seeded = experiment.clone();
                 seeded.set("seed", &seed.to_string());
-                Some(self.tracer.gather(lab, &seeded, scene, bounces, goal, &mut go_on)?)
+                Some(
+                    self.tracer
+                        .gather(lab, &seeded, scene, bounces, goal, &mut go_on)?,
+                )
             }
         };
         let reference = reference.map(Arc::new);
@@ -110,7 +120,14 @@ impl Warm {
 
     /// Lets go of everything on a device that was lost.
     pub fn leave_device(&mut self) {
-        let (loaded, references) = (std::mem::take(&mut self.loaded), std::mem::take(&mut self.references));
-        *self = Warm { loaded, references, ..Warm::default() };
+        let (loaded, references) = (
+            std::mem::take(&mut self.loaded),
+            std::mem::take(&mut self.references),
+        );
+        *self = Warm {
+            loaded,
+            references,
+            ..Warm::default()
+        };
     }
 }

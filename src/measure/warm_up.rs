@@ -22,7 +22,10 @@ impl WarmUp {
     /// their own and take longer for a frame, nor where times are not known.
     pub fn of(device: &DeviceInfo, frames: usize) -> WarmUp {
         let clocks = device.kind != "cpu" && device.timestamp_ns > 0.0;
-        WarmUp { frames, gpu_ms: if clocks { LEAST_GPU_MS } else { 0.0 } }
+        WarmUp {
+            frames,
+            gpu_ms: if clocks { LEAST_GPU_MS } else { 0.0 },
+        }
     }
 
     /// Runs frames until the device is warm, and says how many. `frame` runs one and gives the GPU time, ms, of what

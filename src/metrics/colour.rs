@@ -9,15 +9,27 @@ pub fn luminance(rgb: [f32; 3]) -> f64 {
 
 /// Linear value of an sRGB-encoded one, both 0 to 1 (IEC 61966-2-1).
 pub fn srgb_to_linear(v: f32) -> f32 {
-    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+    if v <= 0.04045 {
+        v / 12.92
+    } else {
+        ((v + 0.055) / 1.055).powf(2.4)
+    }
 }
 
 /// A channel as it is displayed, 0 to 1: c / (1 + c) for radiance, as it is for what is 0 to 1 ([`Kind`]); then encoded
 /// as sRGB (IEC 61966-2-1). Not rounded.
 pub fn display(kind: Kind, c: f32) -> f64 {
     let c = f64::from(c.max(0.0));
-    let shown = if matches!(kind, Kind::Direct | Kind::Radiance) { c / (1.0 + c) } else { c.min(1.0) };
-    if shown <= 0.003_130_8 { 12.92 * shown } else { 1.055 * shown.powf(1.0 / 2.4) - 0.055 }
+    let shown = if matches!(kind, Kind::Direct | Kind::Radiance) {
+        c / (1.0 + c)
+    } else {
+        c.min(1.0)
+    };
+    if shown <= 0.003_130_8 {
+        12.92 * shown
+    } else {
+        1.055 * shown.powf(1.0 / 2.4) - 0.055
+    }
 }
 
 /// XYZ of the white point divided by itself is 1: all spaces here are relative to it.
@@ -54,14 +66,31 @@ pub fn ycxcz(rgb: [f32; 3]) -> [f32; 3] {
 /// The inverse of [`ycxcz`].
 pub fn from_ycxcz([y, cx, cz]: [f32; 3]) -> [f32; 3] {
     let y = (y + 16.0) / 116.0;
-    times(&FROM_XYZ, [(y + cx / 500.0) * WHITE[0], y * WHITE[1], (y - cz / 200.0) * WHITE[2]])
+    times(
+        &FROM_XYZ,
+        [
+            (y + cx / 500.0) * WHITE[0],
+            y * WHITE[1],
+            (y - cz / 200.0) * WHITE[2],
+        ],
+    )
 }
 
 /// CIE L\*a\*b\* with the Hunt effect: chroma fades with lightness (Andersson et al. 2020, section 4.1.2).
 pub fn hunt_lab(rgb: [f32; 3]) -> [f32; 3] {
     const DELTA: f32 = 6.0 / 29.0;
-    let f = |t: f32| if t > DELTA * DELTA * DELTA { t.cbrt() } else { t / (3.0 * DELTA * DELTA) + 4.0 / 29.0 };
+    let f = |t: f32| {
+        if t > DELTA * DELTA * DELTA {
+            t.cbrt()
+        } else {
+            t / (3.0 * DELTA * DELTA) + 4.0 / 29.0
+        }
+    };
     let [x, y, z] = relative_xyz(rgb).map(f);
     let lightness = 116.0 * y - 16.0;
-    [lightness, 0.01 * lightness * 500.0 * (x - y), 0.01 * lightness * 200.0 * (y - z)]
+    [
+        lightness,
+        0.01 * lightness * 500.0 * (x - y),
+        0.01 * lightness * 200.0 * (y - z),
+    ]
 }

@@ -69,11 +69,24 @@ fn colour_error(distance: f32, extreme: f32) -> f32 {
 
 fn perceive(rgb: &[[f32; 3]], width: usize) -> Perceived {
     let opponent: Vec<[f32; 3]> = rgb.par_iter().map(|c| ycxcz(*c)).collect();
-    let channel = |i: usize| Plane { width, values: opponent.par_iter().map(|c| c[i]).collect() };
+    let channel = |i: usize| Plane {
+        width,
+        values: opponent.par_iter().map(|c| c[i]).collect(),
+    };
     let luminance = channel(0);
     // One minus what light does: the detectors see luminance from 0 to 1.
-    let grey = Plane { width, values: luminance.values.par_iter().map(|y| (y + 16.0) / 116.0).collect() };
-    Perceived { colour: filtered_colour(&luminance, &channel(1), &channel(2)), features: features(&grey) }
+    let grey = Plane {
+        width,
+        values: luminance
+            .values
+            .par_iter()
+            .map(|y| (y + 16.0) / 116.0)
+            .collect(),
+    };
+    Perceived {
+        colour: filtered_colour(&luminance, &channel(1), &channel(2)),
+        features: features(&grey),
+    }
 }
 
 /// The eye's contrast sensitivity: one Gaussian for luminance and red-green, a sum of two for blue-yellow.
@@ -82,9 +95,13 @@ fn filtered_colour(luminance: &Plane, red_green: &Plane, blue_yellow: &Plane) ->
     let radius = (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE).ceil() as i32;
     let gaussian = |scale: f64, b: f64| -> Vec<f64> {
         let at = |x: i32| f64::from(x) / PIXELS_PER_DEGREE;
-        (-radius..=radius).map(|x| scale * (-PI * PI * at(x) * at(x) / b).exp()).collect()
+        (-radius..=radius)
+            .map(|x| scale * (-PI * PI * at(x) * at(x) / b).exp())
+            .collect()
     };
-    let normalised = |weights: &[f64], sum: f64| -> Vec<f32> { weights.iter().map(|w| (w / sum) as f32).collect() };
+    let normalised = |weights: &[f64], sum: f64| -> Vec<f32> {
+        weights.iter().map(|w| (w / sum) as f32).collect()
+    };
     let single = |plane: &Plane, b: f64| {
         let weights = gaussian(1.0, b);
         let weights = normalised(&weights, weights.iter().sum());
@@ -114,21 +131,36 @@ fn features(grey: &Plane) -> Vec<[f32; 2]> {
     let deviation = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
     let radius = (3.0 * deviation).ceil() as i32;
     let weights = |f: &dyn Fn(f64) -> f64| -> Vec<f32> {
-        let all: Vec<f64> =
-            (-radius..=radius).map(|x| f(f64::from(x)) * (-0.5 * (f64::from(x) / deviation).powi(2)).exp()).collect();
+        let all: Vec<f64> = (-radius..=radius)
+            .map(|x| f(f64::from(x)) * (-0.5 * (f64::from(x) / deviation).powi(2)).exp())
+            .collect();
         // Positive weights sum to 1, and negative ones to -1.
         let positive: f64 = all.iter().filter(|w| **w > 0.0).sum();
         let negative: f64 = -all.iter().filter(|w| **w < 0.0).sum::<f64>();
-        all.iter().map(|w| (w / if *w > 0.0 { positive } else { negative.max(f64::MIN_POSITIVE) }) as f32).collect()
+        all.iter()
+            .map(|w| {
+                (w / if *w > 0.0 {
+                    positive
+                } else {
+                    negative.max(f64::MIN_POSITIVE)
+                }) as f32
+            })
+            .collect()
     };
     let smooth = weights(&|_| 1.0);
     let first = weights(&|x| -x);
     let second = weights(&|x| x * x / (deviation * deviation) - 1.0);
     let smoothed = grey.rows(&smooth);
     let edge = (grey.rows(&first).columns(&smooth), smoothed.columns(&first));
-    let point = (grey.rows(&second).columns(&smooth), smoothed.columns(&second));
+    let point = (
+        grey.rows(&second).columns(&smooth),
+        smoothed.columns(&second),
+    );
     let length = |p: &(Plane, Plane), i: usize| p.0.values[i].hypot(p.1.values[i]);
-    (0..grey.values.len()).into_par_iter().map(|i| [length(&edge, i), length(&point, i)]).collect()
+    (0..grey.values.len())
+        .into_par_iter()
+        .map(|i| [length(&edge, i), length(&point, i)])
+        .collect()
 }
 
 impl Plane {
@@ -136,18 +168,24 @@ impl Plane {
     fn rows(&self, weights: &[f32]) -> Plane {
         let radius = weights.len() / 2;
         let mut values = vec![0.0; self.values.len()];
-        values.par_chunks_mut(self.width).zip(self.values.par_chunks(self.width)).for_each(|(out, row)| {
-            let (first, last) = (row[0], row[row.len() - 1]);
-            let mut wide = vec![first; radius];
-            wide.extend_from_slice(row);
-            wide.resize(row.len() + 2 * radius, last);
-            for (i, weight) in weights.iter().enumerate() {
-                for (o, v) in out.iter_mut().zip(&wide[i..]) {
-                    *o += weight * v;
+        values
+            .par_chunks_mut(self.width)
+            .zip(self.values.par_chunks(self.width))
+            .for_each(|(out, row)| {
+                let (first, last) = (row[0], row[row.len() - 1]);
+                let mut wide = vec![first; radius];
+                wide.extend_from_slice(row);
+                wide.resize(row.len() + 2 * radius, last);
+                for (i, weight) in weights.iter().enumerate() {
+                    for (o, v) in out.iter_mut().zip(&wide[i..]) {
+                        *o += weight * v;
+                    }
                 }
-            }
-        });
-        Plane { width: self.width, values }
+            });
+        Plane {
+            width: self.width,
+            values,
+        }
     }
 
     /// Convolved along columns, in the same way.
@@ -155,14 +193,20 @@ impl Plane {
         let radius = weights.len() / 2;
         let height = self.values.len() / self.width;
         let mut values = vec![0.0; self.values.len()];
-        values.par_chunks_mut(self.width).enumerate().for_each(|(y, out)| {
-            for (i, weight) in weights.iter().enumerate() {
-                let from = (y + i).saturating_sub(radius).min(height - 1) * self.width;
-                for (o, v) in out.iter_mut().zip(&self.values[from..from + self.width]) {
-                    *o += weight * v;
+        values
+            .par_chunks_mut(self.width)
+            .enumerate()
+            .for_each(|(y, out)| {
+                for (i, weight) in weights.iter().enumerate() {
+                    let from = (y + i).saturating_sub(radius).min(height - 1) * self.width;
+                    for (o, v) in out.iter_mut().zip(&self.values[from..from + self.width]) {
+                        *o += weight * v;
+                    }
                 }
-            }
-        });
-        Plane { width: self.width, values }
+            });
+        Plane {
+            width: self.width,
+            values,
+        }
     }
 }

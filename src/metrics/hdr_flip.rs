@@ -7,7 +7,13 @@ use super::colour::luminance;
 use super::flip::flip;
 
 /// The filmic curve of the evaluator, (a c^2 + b c) / (d c^2 + e c + f): Narkowicz 2015 with its exposure of 0.6.
-const ACES: [f64; 5] = [0.6 * 0.6 * 2.51, 0.6 * 0.03, 0.6 * 0.6 * 2.43, 0.6 * 0.59, 0.14];
+const ACES: [f64; 5] = [
+    0.6 * 0.6 * 2.51,
+    0.6 * 0.03,
+    0.6 * 0.6 * 2.43,
+    0.6 * 0.59,
+    0.14,
+];
 
 /// Displayed luminance to which the brightest and the median pixel are brought.
 const TARGET: f64 = 0.85;
@@ -28,26 +34,51 @@ pub fn exposures(reference: &[[f32; 3]]) -> Exposures {
     let mut values: Vec<f64> = reference.iter().map(|c| luminance(*c)).collect();
     let brightest = values.iter().copied().fold(0.0, f64::max);
     if brightest <= 0.0 {
-        return Exposures { start: 0.0, stop: 0.0, count: 1 };
+        return Exposures {
+            start: 0.0,
+            stop: 0.0,
+            count: 1,
+        };
     }
     let middle = values.len() / 2;
     let median = *values.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let (a, b, c) = (ACES[0] - TARGET * ACES[2], ACES[1] - TARGET * ACES[3], -TARGET * ACES[4]);
+    let (a, b, c) = (
+        ACES[0] - TARGET * ACES[2],
+        ACES[1] - TARGET * ACES[3],
+        -TARGET * ACES[4],
+    );
     let half = -0.5 * b / a;
     let shown = half + (half * half - c / a).sqrt();
     let start = (shown / brightest).log2();
-    let stop = (shown / median.max(f64::from(f32::EPSILON))).log2().max(start);
-    let count = if stop > start { (stop - start).ceil().max(2.0) as u32 } else { 1 };
+    let stop = (shown / median.max(f64::from(f32::EPSILON)))
+        .log2()
+        .max(start);
+    let count = if stop > start {
+        (stop - start).ceil().max(2.0) as u32
+    } else {
+        1
+    };
     Exposures { start, stop, count }
 }
 
 /// HDR-FLIP of every pixel, 0 to 1: the largest FLIP over the exposures. Costs a FLIP for each of them.
-pub fn hdr_flip(test: &[[f32; 3]], reference: &[[f32; 3]], width: usize, at: Exposures) -> Vec<f32> {
+pub fn hdr_flip(
+    test: &[[f32; 3]],
+    reference: &[[f32; 3]],
+    width: usize,
+    at: Exposures,
+) -> Vec<f32> {
     let mut worst = vec![0.0f32; reference.len()];
     for i in 0..at.count {
-        let stops = at.start + f64::from(i) * (at.stop - at.start) / f64::from((at.count - 1).max(1));
-        let shown = |rgb: &[[f32; 3]]| -> Vec<[f32; 3]> { rgb.iter().map(|c| c.map(|v| filmic(v, stops))).collect() };
-        for (worst, error) in worst.iter_mut().zip(flip(&shown(test), &shown(reference), width)) {
+        let stops =
+            at.start + f64::from(i) * (at.stop - at.start) / f64::from((at.count - 1).max(1));
+        let shown = |rgb: &[[f32; 3]]| -> Vec<[f32; 3]> {
+            rgb.iter().map(|c| c.map(|v| filmic(v, stops))).collect()
+        };
+        for (worst, error) in worst
+            .iter_mut()
+            .zip(flip(&shown(test), &shown(reference), width))
+        {
             *worst = worst.max(error);
         }
     }

@@ -3,7 +3,9 @@
 use super::colour::luminance;
 use super::means::relative_square;
 use super::{Compared, MetricError};
-use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage,
+};
 use std::io::Cursor;
 
 /// Decades of the relative squared error that the map shows, from its darkest to its brightest colour.
@@ -30,9 +32,17 @@ pub struct MapFile {
 pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
     let pairs = || compared.test.rgb.iter().zip(&compared.reference.rgb);
     let relative: Vec<f32> = pairs()
-        .map(|(x, r)| (x.iter().zip(r).map(|(x, r)| relative_square(*x, *r, *r)).sum::<f64>() / 3.0) as f32)
+        .map(|(x, r)| {
+            (x.iter()
+                .zip(r)
+                .map(|(x, r)| relative_square(*x, *r, *r))
+                .sum::<f64>()
+                / 3.0) as f32
+        })
         .collect();
-    let difference: Vec<f32> = pairs().map(|(x, r)| (luminance(*x) - luminance(*r)) as f32).collect();
+    let difference: Vec<f32> = pairs()
+        .map(|(x, r)| (luminance(*x) - luminance(*r)) as f32)
+        .collect();
     let structure = compared.structure().map();
     // What is dark is a known part of the mean.
     let full = (compared.dark / super::DARK).max(f64::MIN_POSITIVE);
@@ -40,7 +50,11 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
     let logarithmic = |v: &f32| (f64::from(*v).log10() - DECADES.0) / (DECADES.1 - DECADES.0);
     let flip_scale = "magma, 0 to 1";
     let png = |name, rgb: Vec<[u8; 3]>, scale: String| {
-        Ok::<_, MetricError>(MapFile { name, bytes: encode_png(size, &rgb)?, scale })
+        Ok::<_, MetricError>(MapFile {
+            name,
+            bytes: encode_png(size, &rgb)?,
+            scale,
+        })
     };
     Ok(vec![
         png("flip.png", compared.flip().iter().map(|v| magma(f64::from(*v))).collect(), flip_scale.into())?,
@@ -82,7 +96,11 @@ const MAGMA: &[u8; 768] = include_bytes!("magma.rgb");
 
 /// The colour of a value, 0 to 1; numbers that are none are as bright as can be.
 pub fn magma(value: f64) -> [u8; 3] {
-    let value = if value.is_nan() { 1.0 } else { value.clamp(0.0, 1.0) };
+    let value = if value.is_nan() {
+        1.0
+    } else {
+        value.clamp(0.0, 1.0)
+    };
     let i = 3 * (value * 255.0 + 0.5) as usize;
     [MAGMA[i], MAGMA[i + 1], MAGMA[i + 2]]
 }
@@ -92,7 +110,11 @@ fn diverging(value: f64) -> [u8; 3] {
     if value.is_nan() {
         return [0; 3];
     }
-    let full = if value < 0.0 { [33.0, 76.0, 190.0] } else { [190.0, 20.0, 38.0] };
+    let full = if value < 0.0 {
+        [33.0, 76.0, 190.0]
+    } else {
+        [190.0, 20.0, 38.0]
+    };
     full.map(|f| (255.0 + value.abs().min(1.0) * (f - 255.0)).round() as u8)
 }
 
@@ -104,11 +126,20 @@ fn encode_png((width, height): (u32, u32), rgb: &[[u8; 3]]) -> Result<Vec<u8>, M
     Ok(out.into_inner())
 }
 
-fn encode_exr((width, height): (u32, u32), channels: [(&str, &[f32]); 5]) -> Result<Vec<u8>, MetricError> {
-    let channel = |(name, values): (&str, &[f32])| AnyChannel::new(name, FlatSamples::F32(values.to_vec()));
+fn encode_exr(
+    (width, height): (u32, u32),
+    channels: [(&str, &[f32]); 5],
+) -> Result<Vec<u8>, MetricError> {
+    let channel =
+        |(name, values): (&str, &[f32])| AnyChannel::new(name, FlatSamples::F32(values.to_vec()));
     let channels = AnyChannels::sort(channels.into_iter().map(channel).collect());
     let size = (width as usize, height as usize);
-    let layer = Layer::new(size, LayerAttributes::default(), Encoding::SMALL_LOSSLESS, channels);
+    let layer = Layer::new(
+        size,
+        LayerAttributes::default(),
+        Encoding::SMALL_LOSSLESS,
+        channels,
+    );
     let mut out = Cursor::new(Vec::new());
     let written = Image::from_layer(layer).write().to_buffered(&mut out);
     written.map_err(|e| MetricError(format!("cannot make the EXR of the maps: {e}")))?;

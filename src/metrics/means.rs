@@ -22,7 +22,10 @@ pub(super) fn relmse(c: &Compared, mask: Mask) -> f64 {
 }
 
 pub(super) fn rmse(c: &Compared, mask: Mask) -> f64 {
-    over_channels(c, mask, |x, r| (f64::from(x) - f64::from(r)) * (f64::from(x) - f64::from(r))).sqrt()
+    over_channels(c, mask, |x, r| {
+        (f64::from(x) - f64::from(r)) * (f64::from(x) - f64::from(r))
+    })
+    .sqrt()
 }
 
 pub(super) fn smape(c: &Compared, mask: Mask) -> f64 {
@@ -37,7 +40,11 @@ pub(super) fn energy_ratio(c: &Compared, mask: Mask) -> f64 {
         x.iter().for_each(|v| *test += f64::from(*v));
         r.iter().for_each(|v| *reference += f64::from(*v));
     });
-    if reference == 0.0 { f64::NAN } else { test / reference }
+    if reference == 0.0 {
+        f64::NAN
+    } else {
+        test / reference
+    }
 }
 
 pub(super) fn flip(c: &Compared, mask: Mask) -> f64 {
@@ -77,16 +84,23 @@ fn is_lost(c: &Compared, x: [f32; 3], r: [f32; 3]) -> bool {
 }
 
 /// Sums over the pixels of a mask; `add` is given the number of each.
-pub(super) fn sums<const N: usize>(c: &Compared, mask: Mask, add: impl Fn(usize, &mut [f64; N]) + Sync) -> [f64; N] {
+pub(super) fn sums<const N: usize>(
+    c: &Compared,
+    mask: Mask,
+    add: impl Fn(usize, &mut [f64; N]) + Sync,
+) -> [f64; N] {
     let (width, height) = (c.test.size.0 as usize, c.test.size.1 as usize);
     let row = |y: usize| {
         let mut sums = [0.0; N];
-        let pixels = (y * width..(y + 1) * width).filter(|i| mask.is_none_or(|m| m.get(*i) == Some(&true)));
+        let pixels =
+            (y * width..(y + 1) * width).filter(|i| mask.is_none_or(|m| m.get(*i) == Some(&true)));
         pixels.for_each(|i| add(i, &mut sums));
         sums
     };
     let rows: Vec<[f64; N]> = (0..height).into_par_iter().map(row).collect();
-    rows.iter().fold([0.0; N], |all, row| std::array::from_fn(|i| all[i] + row[i]))
+    rows.iter().fold([0.0; N], |all, row| {
+        std::array::from_fn(|i| all[i] + row[i])
+    })
 }
 
 /// Sums over the pixels of a mask that are finite in both pictures; `add` is given their values in both.
@@ -122,7 +136,11 @@ fn over_map(c: &Compared, mask: Mask, map: &[f32]) -> f64 {
 }
 
 /// Mean over the channels of the pixels that `light` picks, of what it picks; 0 where it picks none.
-fn light_where(c: &Compared, mask: Mask, light: impl Fn([f32; 3], [f32; 3]) -> Option<[f32; 3]> + Sync) -> f64 {
+fn light_where(
+    c: &Compared,
+    mask: Mask,
+    light: impl Fn([f32; 3], [f32; 3]) -> Option<[f32; 3]> + Sync,
+) -> f64 {
     let [sum, count] = over_finite(c, mask, |x, r, [sum, count]| {
         if let Some(light) = light(x, r) {
             *sum += light.iter().map(|v| f64::from(*v)).sum::<f64>();

@@ -42,12 +42,21 @@ pub struct Linear {
 impl Linear {
     /// A picture of radiance.
     pub fn radiance(size: (u32, u32), rgb: Vec<[f32; 3]>) -> Linear {
-        Linear { size, rgb, kind: Kind::Radiance }
+        Linear {
+            size,
+            rgb,
+            kind: Kind::Radiance,
+        }
     }
 
     /// Mean over pixels and channels.
     pub fn mean(&self) -> f64 {
-        self.rgb.iter().flatten().map(|v| f64::from(*v)).sum::<f64>() / (3 * self.rgb.len().max(1)) as f64
+        self.rgb
+            .iter()
+            .flatten()
+            .map(|v| f64::from(*v))
+            .sum::<f64>()
+            / (3 * self.rgb.len().max(1)) as f64
     }
 }
 
@@ -66,8 +75,15 @@ pub fn relmse(test: &Linear, reference: &Linear) -> Result<f64, MetricError> {
 pub fn relative_distance(x: &Linear, y: &Linear, reference: &Linear) -> Result<f64, MetricError> {
     check(x, reference)?;
     check(y, reference)?;
-    let texels = x.rgb.iter().flatten().zip(y.rgb.iter().flatten()).zip(reference.rgb.iter().flatten());
-    let sum: f64 = texels.map(|((x, y), r)| means::relative_square(*x, *y, *r)).sum();
+    let texels = x
+        .rgb
+        .iter()
+        .flatten()
+        .zip(y.rgb.iter().flatten())
+        .zip(reference.rgb.iter().flatten());
+    let sum: f64 = texels
+        .map(|((x, y), r)| means::relative_square(*x, *y, *r))
+        .sum();
     Ok(sum / (3 * x.rgb.len()) as f64)
 }
 
@@ -135,7 +151,14 @@ impl<'a> Compared<'a> {
         check(test, reference)?;
         let dark = dark(test, reference);
         let (flip, hdr_flip, structure) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
-        Ok(Compared { test, reference, dark, flip, hdr_flip, structure })
+        Ok(Compared {
+            test,
+            reference,
+            dark,
+            flip,
+            hdr_flip,
+            structure,
+        })
     }
 
     /// The scores over the pixels of a mask, or over all of them; nothing where none of them is a number in both.
@@ -154,16 +177,27 @@ impl<'a> Compared<'a> {
     /// # Errors
     /// No pixel is a number in both pictures.
     pub fn score(&self, metric: &Metric) -> Result<f64, MetricError> {
-        if (0..self.test.rgb.len()).any(|i| self.is_finite(i)) { Ok((metric.of)(self, None)) } else { Err(no_number()) }
+        if (0..self.test.rgb.len()).any(|i| self.is_finite(i)) {
+            Ok((metric.of)(self, None))
+        } else {
+            Err(no_number())
+        }
     }
 
     /// FLIP of every pixel, 0 to 1. Takes most of a second for a megapixel on one core.
     pub fn flip(&self) -> &[f32] {
         self.flip.get_or_init(|| {
             let show = |picture: &Linear| -> Vec<[f32; 3]> {
-                self.visible(picture).iter().map(|c| c.map(|v| self.reference.kind.shown(v))).collect()
+                self.visible(picture)
+                    .iter()
+                    .map(|c| c.map(|v| self.reference.kind.shown(v)))
+                    .collect()
             };
-            self.marked(flip::flip(&show(self.test), &show(self.reference), self.width()))
+            self.marked(flip::flip(
+                &show(self.test),
+                &show(self.reference),
+                self.width(),
+            ))
         })
     }
 
@@ -181,12 +215,16 @@ impl<'a> Compared<'a> {
         self.hdr_flip.get_or_init(|| {
             let (x, r) = (self.visible(self.test), self.visible(self.reference));
             let exposures = hdr_flip::exposures(&r);
-            (exposures, self.marked(hdr_flip::hdr_flip(&x, &r, self.width(), exposures)))
+            (
+                exposures,
+                self.marked(hdr_flip::hdr_flip(&x, &r, self.width(), exposures)),
+            )
         })
     }
 
     fn structure(&self) -> &Structure {
-        self.structure.get_or_init(|| Structure::new(self.test, self.reference, self.dark, 1.0))
+        self.structure
+            .get_or_init(|| Structure::new(self.test, self.reference, self.dark, 1.0))
     }
 
     fn width(&self) -> usize {
@@ -200,12 +238,23 @@ impl<'a> Compared<'a> {
     /// As FLIP sees it: one wrong pixel would reach all that its filters see around it; light is never negative to an eye.
     fn visible(&self, picture: &Linear) -> Vec<[f32; 3]> {
         let pixels = picture.rgb.iter().enumerate();
-        pixels.map(|(i, c)| if self.is_finite(i) { c.map(|v| v.max(0.0)) } else { [0.0; 3] }).collect()
+        pixels
+            .map(|(i, c)| {
+                if self.is_finite(i) {
+                    c.map(|v| v.max(0.0))
+                } else {
+                    [0.0; 3]
+                }
+            })
+            .collect()
     }
 
     /// A map in which wrong pixels count as 1.
     fn marked(&self, mut map: Vec<f32>) -> Vec<f32> {
-        map.iter_mut().enumerate().filter(|(i, _)| !self.is_finite(*i)).for_each(|(_, v)| *v = 1.0);
+        map.iter_mut()
+            .enumerate()
+            .filter(|(i, _)| !self.is_finite(*i))
+            .for_each(|(_, v)| *v = 1.0);
         map
     }
 }
@@ -216,8 +265,16 @@ fn no_number() -> MetricError {
 
 /// Luminance up to which a pixel is dark: [`DARK`] of the mean over the reference's pixels that are finite in both.
 fn dark(test: &Linear, reference: &Linear) -> f64 {
-    let finite = || test.rgb.iter().zip(&reference.rgb).filter(|(x, r)| is_finite(**x, **r)).map(|pair| pair.1);
-    let sum: f64 = finite().map(|c| colour::luminance(c.map(|v| v.max(0.0)))).sum();
+    let finite = || {
+        test.rgb
+            .iter()
+            .zip(&reference.rgb)
+            .filter(|(x, r)| is_finite(**x, **r))
+            .map(|pair| pair.1)
+    };
+    let sum: f64 = finite()
+        .map(|c| colour::luminance(c.map(|v| v.max(0.0))))
+        .sum();
     DARK * sum / finite().count().max(1) as f64
 }
 
@@ -234,10 +291,17 @@ fn check(test: &Linear, reference: &Linear) -> Result<(), MetricError> {
     }
     let pixels = u64::from(w) * u64::from(h);
     if pixels == 0 || pixels > MAX_PIXELS {
-        return Err(MetricError(format!("a picture of {w}x{h} cannot be compared: 1 to {MAX_PIXELS} pixels can")));
+        return Err(MetricError(format!(
+            "a picture of {w}x{h} cannot be compared: 1 to {MAX_PIXELS} pixels can"
+        )));
     }
-    if [test, reference].iter().any(|p| p.rgb.len() as u64 != pixels) {
-        return Err(MetricError(format!("a picture of {w}x{h} must have {pixels} texels")));
+    if [test, reference]
+        .iter()
+        .any(|p| p.rgb.len() as u64 != pixels)
+    {
+        return Err(MetricError(format!(
+            "a picture of {w}x{h} must have {pixels} texels"
+        )));
     }
     Ok(())
 }

@@ -23,7 +23,10 @@ const BRIGHT: f64 = 4.0;
 impl Region {
     /// The pixels of a mask picture whose luminance is at least one half.
     pub fn painted(name: &str, mask: &Linear) -> Region {
-        Region { name: name.into(), mask: mask.rgb.iter().map(|c| luminance(*c) >= 0.5).collect() }
+        Region {
+            name: name.into(),
+            mask: mask.rgb.iter().map(|c| luminance(*c) >= 0.5).collect(),
+        }
     }
 
     /// Part of the frame, 0 to 1.
@@ -52,19 +55,38 @@ pub fn regions(reference: &BTreeMap<String, Linear>) -> Vec<Region> {
     let mut list = Vec::new();
     let mut add = |name: &str, mask: Vec<bool>| {
         if mask.contains(&true) {
-            list.push(Region { name: name.into(), mask });
+            list.push(Region {
+                name: name.into(),
+                mask,
+            });
         }
     };
     if let Some((total, mean)) = luminances(reference.get("total")) {
         add("dark", total.iter().map(|v| *v <= DARK * mean).collect());
-        add("bright", total.iter().map(|v| *v >= BRIGHT * mean && *v > 0.0).collect());
-        if let Some((direct, direct_mean)) = luminances(of_kind(Kind::Direct)).filter(|d| d.0.len() == total.len()) {
+        add(
+            "bright",
+            total
+                .iter()
+                .map(|v| *v >= BRIGHT * mean && *v > 0.0)
+                .collect(),
+        );
+        if let Some((direct, direct_mean)) =
+            luminances(of_kind(Kind::Direct)).filter(|d| d.0.len() == total.len())
+        {
             let pairs = direct.iter().zip(&total);
-            add("indirect only", pairs.map(|(d, t)| *d <= DARK * direct_mean && *t > DARK * mean).collect());
+            add(
+                "indirect only",
+                pairs
+                    .map(|(d, t)| *d <= DARK * direct_mean && *t > DARK * mean)
+                    .collect(),
+            );
         }
     }
     if let Some((openness, _)) = luminances(of_kind(Kind::Openness)) {
-        add("concave corners", openness.iter().map(|v| *v < CONCAVE).collect());
+        add(
+            "concave corners",
+            openness.iter().map(|v| *v < CONCAVE).collect(),
+        );
         add("open", openness.iter().map(|v| *v >= OPEN).collect());
     }
     list

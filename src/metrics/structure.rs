@@ -56,12 +56,36 @@ impl Structure {
     pub(super) fn new(test: &Linear, reference: &Linear, dark: f64, factor: f64) -> Structure {
         let size = (test.size.0 as usize, test.size.1 as usize);
         let columns = size.0.div_ceil(BLOCK);
-        let (x, r) = (logarithms(test, reference, test, dark), logarithms(test, reference, reference, dark));
+        let (x, r) = (
+            logarithms(test, reference, test, dark),
+            logarithms(test, reference, reference, dark),
+        );
         let pair = |a: usize, b: usize| counted(factor * ((x[b] - x[a]) - (r[b] - r[a]))) as f32;
         let all = || (0..x.len()).into_par_iter();
-        let right = all().map(|i| if (i + 1) % columns == 0 { f32::NAN } else { pair(i, i + 1) }).collect();
-        let below = all().map(|i| if i + columns < x.len() { pair(i, i + columns) } else { f32::NAN }).collect();
-        Structure { size, columns, right, below }
+        let right = all()
+            .map(|i| {
+                if (i + 1) % columns == 0 {
+                    f32::NAN
+                } else {
+                    pair(i, i + 1)
+                }
+            })
+            .collect();
+        let below = all()
+            .map(|i| {
+                if i + columns < x.len() {
+                    pair(i, i + columns)
+                } else {
+                    f32::NAN
+                }
+            })
+            .collect();
+        Structure {
+            size,
+            columns,
+            right,
+            below,
+        }
     }
 
     /// Mean over the pairs of a mask's blocks, those with at least half of their pixels in it, or over all; no number
@@ -81,24 +105,36 @@ impl Structure {
             sums
         };
         // Row by row, and then in order: the same whatever the number of threads.
-        let rows: Vec<(f64, u64)> =
-            (0..self.right.len() / self.columns).into_par_iter().map(|y| row(y * self.columns)).collect();
-        let (sum, pairs) = rows.iter().fold((0.0, 0), |all, row| (all.0 + row.0, all.1 + row.1));
+        let rows: Vec<(f64, u64)> = (0..self.right.len() / self.columns)
+            .into_par_iter()
+            .map(|y| row(y * self.columns))
+            .collect();
+        let (sum, pairs) = rows
+            .iter()
+            .fold((0.0, 0), |all, row| (all.0 + row.0, all.1 + row.1));
         sum / pairs as f64
     }
 
     /// For each pixel the mean over the pairs that its block is in.
     pub(super) fn map(&self) -> Vec<f32> {
         let block = |i: usize| {
-            let left = if i.is_multiple_of(self.columns) { f32::NAN } else { self.right[i - 1] };
-            let above = i.checked_sub(self.columns).map_or(f32::NAN, |above| self.below[above]);
+            let left = if i.is_multiple_of(self.columns) {
+                f32::NAN
+            } else {
+                self.right[i - 1]
+            };
+            let above = i
+                .checked_sub(self.columns)
+                .map_or(f32::NAN, |above| self.below[above]);
             let all = [self.right[i], self.below[i], left, above];
             let pairs = || all.iter().filter(|v| !v.is_nan());
             pairs().sum::<f32>() / pairs().count() as f32
         };
         let blocks: Vec<f32> = (0..self.right.len()).into_par_iter().map(block).collect();
         let (width, height) = self.size;
-        (0..width * height).map(|i| blocks[i / width / BLOCK * self.columns + i % width / BLOCK]).collect()
+        (0..width * height)
+            .map(|i| blocks[i / width / BLOCK * self.columns + i % width / BLOCK])
+            .collect()
     }
 
     /// Whether at least half of each block's pixels are in a mask.
@@ -115,7 +151,9 @@ impl Structure {
 fn pixels(block: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
     let columns = width.div_ceil(BLOCK);
     let (left, top) = (block % columns * BLOCK, block / columns * BLOCK);
-    let rows = (top..top + BLOCK).map(move |y| y * width).take_while(move |row| *row < count);
+    let rows = (top..top + BLOCK)
+        .map(move |y| y * width)
+        .take_while(move |row| *row < count);
     rows.flat_map(move |row| (row + left)..(row + (left + BLOCK).min(width)))
 }
 
@@ -130,7 +168,14 @@ fn logarithms(test: &Linear, reference: &Linear, picture: &Linear, dark: f64) ->
         };
         let sum: f64 = finite().map(|i| luminance(picture.rgb[i])).sum();
         let mean = sum.max(0.0) / finite().count() as f64;
-        if dark > 0.0 { (mean + dark).ln() } else { f64::NAN }
+        if dark > 0.0 {
+            (mean + dark).ln()
+        } else {
+            f64::NAN
+        }
     };
-    (0..width.div_ceil(BLOCK) * height.div_ceil(BLOCK)).into_par_iter().map(block).collect()
+    (0..width.div_ceil(BLOCK) * height.div_ceil(BLOCK))
+        .into_par_iter()
+        .map(block)
+        .collect()
 }

@@ -67,34 +67,95 @@ pub const RELMSE: &str = "relmse";
 pub static METRICS: &[Metric] = &[
     Metric {
         brief: true,
-        noise: Some(OfNoise { of: |n| n.relmse, perfect: 0.25, none: NOISE_FACTOR }),
-        ..metric(RELMSE, "relMSE", "mean (x - r)^2 / (r^2 + 0.01)", means::relmse)
+        noise: Some(OfNoise {
+            of: |n| n.relmse,
+            perfect: 0.25,
+            none: NOISE_FACTOR,
+        }),
+        ..metric(
+            RELMSE,
+            "relMSE",
+            "mean (x - r)^2 / (r^2 + 0.01)",
+            means::relmse,
+        )
     },
-    metric("rmse", "RMSE", "root of mean (x - r)^2, radiance", means::rmse),
+    metric(
+        "rmse",
+        "RMSE",
+        "root of mean (x - r)^2, radiance",
+        means::rmse,
+    ),
     Metric {
         head: Some("energy"),
         best: Best::One,
         brief: true,
-        ..metric("energy_ratio", "energy ratio", "mean x / mean r; none where r is black", means::energy_ratio)
+        ..metric(
+            "energy_ratio",
+            "energy ratio",
+            "mean x / mean r; none where r is black",
+            means::energy_ratio,
+        )
     },
-    metric("smape", "SMAPE", "mean |x - r| / (|x| + |r| + 0.01), 0 to 1", means::smape),
-    Metric { brief: true, ..metric("flip", "FLIP", "mean FLIP of the displayed picture, 0 to 1", means::flip) },
-    metric("hdr_flip", "HDR-FLIP", "mean of the largest FLIP over all exposures, 0 to 1", means::hdr_flip),
+    metric(
+        "smape",
+        "SMAPE",
+        "mean |x - r| / (|x| + |r| + 0.01), 0 to 1",
+        means::smape,
+    ),
     Metric {
         brief: true,
-        noise: Some(OfNoise { of: |n| n.structure, perfect: 1.0, none: 1.0 }),
-        ..metric("structure", "structure", "edges that r does not have, natural log units", means::structure)
+        ..metric(
+            "flip",
+            "FLIP",
+            "mean FLIP of the displayed picture, 0 to 1",
+            means::flip,
+        )
     },
-    metric("leak", "leak", "mean x where r is dark, radiance", means::leak),
+    metric(
+        "hdr_flip",
+        "HDR-FLIP",
+        "mean of the largest FLIP over all exposures, 0 to 1",
+        means::hdr_flip,
+    ),
+    Metric {
+        brief: true,
+        noise: Some(OfNoise {
+            of: |n| n.structure,
+            perfect: 1.0,
+            none: 1.0,
+        }),
+        ..metric(
+            "structure",
+            "structure",
+            "edges that r does not have, natural log units",
+            means::structure,
+        )
+    },
+    metric(
+        "leak",
+        "leak",
+        "mean x where r is dark, radiance",
+        means::leak,
+    ),
     Metric {
         head: None,
         best: Best::Nowhere,
-        ..metric("dark", "dark", "part of the pixels where r is dark, 0 to 1", means::dark)
+        ..metric(
+            "dark",
+            "dark",
+            "part of the pixels where r is dark, 0 to 1",
+            means::dark,
+        )
     },
     Metric {
         head: Some("over-occl."),
         best: Best::Nowhere,
-        ..metric("over_occlusion", "over-occlusion", "mean r where x alone is dark, radiance", means::over_occlusion)
+        ..metric(
+            "over_occlusion",
+            "over-occlusion",
+            "mean r where x alone is dark, radiance",
+            means::over_occlusion,
+        )
     },
     Metric {
         head: Some("of pixels"),
@@ -108,8 +169,22 @@ pub static METRICS: &[Metric] = &[
 ];
 
 /// An error that few tables have and whose noise is not known.
-const fn metric(key: &'static str, title: &'static str, help: &'static str, of: fn(&Compared, Mask) -> f64) -> Metric {
-    Metric { key, title, head: Some(title), help, best: Best::Zero, brief: false, noise: None, of }
+const fn metric(
+    key: &'static str,
+    title: &'static str,
+    help: &'static str,
+    of: fn(&Compared, Mask) -> f64,
+) -> Metric {
+    Metric {
+        key,
+        title,
+        head: Some(title),
+        help,
+        best: Best::Zero,
+        brief: false,
+        noise: None,
+        of,
+    }
 }
 
 impl Metric {
@@ -135,17 +210,27 @@ impl Metric {
 
     /// How far a value is from the best one.
     pub fn distance(&self, value: f64) -> f64 {
-        if self.best == Best::One { value.ln().abs() } else { value }
+        if self.best == Best::One {
+            value.ln().abs()
+        } else {
+            value
+        }
     }
 
     /// Name of its distance on axes.
     pub fn axis(&self) -> String {
-        if self.best == Best::One { format!("|ln {}|", self.title) } else { self.title.into() }
+        if self.best == Best::One {
+            format!("|ln {}|", self.title)
+        } else {
+            self.title.into()
+        }
     }
 
     /// Whether a distance, or a difference of two, is not told from the noise of the reference.
     pub fn within(&self, distance: f64, noise: Noise) -> bool {
-        self.noise.as_ref().is_some_and(|of| distance.abs() < of.none * (of.of)(noise))
+        self.noise
+            .as_ref()
+            .is_some_and(|of| distance.abs() < of.none * (of.of)(noise))
     }
 }
 
@@ -174,19 +259,35 @@ pub struct Scores {
 
 impl Scores {
     /// By these metrics; by others it is no number. Nothing without a finite pixel.
-    pub(super) fn new(compared: &Compared, mask: Mask, wanted: &dyn Fn(&Metric) -> bool) -> Option<Scores> {
+    pub(super) fn new(
+        compared: &Compared,
+        mask: Mask,
+        wanted: &dyn Fn(&Metric) -> bool,
+    ) -> Option<Scores> {
         let [pixels, finite] = means::sums(compared, mask, |i, [pixels, finite]| {
             *pixels += 1.0;
             *finite += f64::from(u8::from(compared.is_finite(i)));
         });
-        let value = |m: &Metric| if wanted(m) { (m.of)(compared, mask) } else { f64::NAN };
+        let value = |m: &Metric| {
+            if wanted(m) {
+                (m.of)(compared, mask)
+            } else {
+                f64::NAN
+            }
+        };
         let values = || METRICS.iter().map(value).collect();
-        (finite > 0.0).then(|| Scores { values: values(), pixels: pixels as u64, not_finite: (pixels - finite) as u64 })
+        (finite > 0.0).then(|| Scores {
+            values: values(),
+            pixels: pixels as u64,
+            not_finite: (pixels - finite) as u64,
+        })
     }
 
     /// The value of a metric; no number where it has none, or there is no such metric.
     pub fn get(&self, key: &str) -> f64 {
-        self.values().find(|v| v.0.key == key).map_or(f64::NAN, |v| v.1)
+        self.values()
+            .find(|v| v.0.key == key)
+            .map_or(f64::NAN, |v| v.1)
     }
 
     /// All metrics and their values.
@@ -196,16 +297,26 @@ impl Scores {
 
     /// Everything that is a number, by its name in JSON.
     pub fn numbers(&self) -> BTreeMap<String, f64> {
-        let values = self.values().map(|(m, v)| (m.key, v)).filter(|(_, v)| v.is_finite());
-        let counts = [("pixels", self.pixels as f64), ("not_finite", self.not_finite as f64)];
-        values.chain(counts).map(|(key, value)| (key.into(), value)).collect()
+        let values = self
+            .values()
+            .map(|(m, v)| (m.key, v))
+            .filter(|(_, v)| v.is_finite());
+        let counts = [
+            ("pixels", self.pixels as f64),
+            ("not_finite", self.not_finite as f64),
+        ];
+        values
+            .chain(counts)
+            .map(|(key, value)| (key.into(), value))
+            .collect()
     }
 }
 
 impl Serialize for Scores {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(METRICS.len() + 2))?;
-        self.values().try_for_each(|(metric, value)| map.serialize_entry(metric.key, &value))?;
+        self.values()
+            .try_for_each(|(metric, value)| map.serialize_entry(metric.key, &value))?;
         map.serialize_entry("pixels", &self.pixels)?;
         map.serialize_entry("not_finite", &self.not_finite)?;
         map.end()
@@ -217,9 +328,16 @@ impl<'de> Deserialize<'de> for Scores {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Scores, D::Error> {
         let found = BTreeMap::<String, Option<f64>>::deserialize(deserializer)?;
         let value = |key: &str| found.get(key).copied().flatten();
-        let count = |key: &'static str| value(key).map(|n| n as u64).ok_or_else(|| D::Error::missing_field(key));
+        let count = |key: &'static str| {
+            value(key)
+                .map(|n| n as u64)
+                .ok_or_else(|| D::Error::missing_field(key))
+        };
         Ok(Scores {
-            values: METRICS.iter().map(|m| value(m.key).unwrap_or(f64::NAN)).collect(),
+            values: METRICS
+                .iter()
+                .map(|m| value(m.key).unwrap_or(f64::NAN))
+                .collect(),
             pixels: count("pixels")?,
             not_finite: count("not_finite")?,
         })

@@ -112,7 +112,11 @@ pub fn spread(mut values: Vec<f64>) -> Spread {
         let i = (q * values.len() as f64).ceil() as usize;
         values.get(i.saturating_sub(1)).copied().unwrap_or(0.0)
     };
-    Spread { min: values.first().copied().unwrap_or(0.0), median: rank(0.5), p95: rank(0.95) }
+    Spread {
+        min: values.first().copied().unwrap_or(0.0),
+        median: rank(0.5),
+        p95: rank(0.95),
+    }
 }
 
 /// The measurements of a session.
@@ -125,13 +129,28 @@ pub fn collect(
     warnings: Vec<String>,
 ) -> Stats {
     let mut passes = Vec::new();
-    for (i, (number, _)) in times.first().map_or(&[][..], |t| &t.passes).iter().enumerate() {
-        let values: Vec<f64> = times.iter().filter_map(|t| t.passes.get(i)).map(|p| p.1).collect();
+    for (i, (number, _)) in times
+        .first()
+        .map_or(&[][..], |t| &t.passes)
+        .iter()
+        .enumerate()
+    {
+        let values: Vec<f64> = times
+            .iter()
+            .filter_map(|t| t.passes.get(i))
+            .map(|p| p.1)
+            .collect();
         let frames = values.len();
         let pass = &session.graph.passes[*number].value;
         let (name, stage) = (pass.name.value.clone(), pass.stage().to_string());
         let slept = times.iter().filter(|t| t.asleep.contains(number)).count();
-        passes.push(PassStats { name, stage, gpu_ms: spread(values), frames, slept });
+        passes.push(PassStats {
+            name,
+            stage,
+            gpu_ms: spread(values),
+            frames,
+            slept,
+        });
     }
     let bytes: BTreeMap<String, u64> = session.program.memory(&session.graph).into_iter().collect();
     let (width, height) = session.size();
@@ -162,7 +181,12 @@ fn param_values(params: &Params) -> BTreeMap<String, serde_json::Value> {
         .list
         .iter()
         .zip(&params.values)
-        .map(|(p, v)| (p.name.clone(), serde_json::to_value(v).unwrap_or(serde_json::Value::Null)))
+        .map(|(p, v)| {
+            (
+                p.name.clone(),
+                serde_json::to_value(v).unwrap_or(serde_json::Value::Null),
+            )
+        })
         .chain((!params.off.is_empty()).then(|| (OFF.to_string(), params.off.clone().into())))
         .collect()
 }
@@ -170,17 +194,36 @@ fn param_values(params: &Params) -> BTreeMap<String, serde_json::Value> {
 /// A table for people.
 pub fn table(stats: &Stats) -> String {
     use std::fmt::Write;
-    let mut out = format!("{} ({}), {}x{}\n", stats.device.name, stats.device.driver, stats.size[0], stats.size[1]);
-    let _ = writeln!(out, "{:<28}{:>10}{:>10}{:>10}", "GPU ms", "min", "median", "p95");
+    let mut out = format!(
+        "{} ({}), {}x{}\n",
+        stats.device.name, stats.device.driver, stats.size[0], stats.size[1]
+    );
+    let _ = writeln!(
+        out,
+        "{:<28}{:>10}{:>10}{:>10}",
+        "GPU ms", "min", "median", "p95"
+    );
     let mut row = |name: &str, s: &Spread| {
-        let _ = writeln!(out, "{name:<28}{:>10.3}{:>10.3}{:>10.3}", s.min, s.median, s.p95);
+        let _ = writeln!(
+            out,
+            "{name:<28}{:>10.3}{:>10.3}{:>10.3}",
+            s.min, s.median, s.p95
+        );
     };
     for pass in &stats.passes {
         let asleep = pass.slept == pass.frames && pass.slept > 0;
-        row(&format!("{}{}", pass.name, if asleep { " (slept)" } else { "" }), &pass.gpu_ms);
+        row(
+            &format!("{}{}", pass.name, if asleep { " (slept)" } else { "" }),
+            &pass.gpu_ms,
+        );
     }
     row("total", &stats.total_gpu_ms);
     row("CPU record and submit", &stats.cpu_ms);
-    let _ = writeln!(out, "{:<28}{:>10.1} MiB", "memory of the graph", stats.total_bytes as f64 / 1048576.0);
+    let _ = writeln!(
+        out,
+        "{:<28}{:>10.1} MiB",
+        "memory of the graph",
+        stats.total_bytes as f64 / 1048576.0
+    );
     out
 }

@@ -62,9 +62,13 @@ impl Timers {
         size: [u32; 2],
         passes: &[(usize, f64)],
     ) -> Timers {
-        let passes = passes.iter().filter_map(|(n, ms)| Some((&graph.passes.get(*n)?.value, *ms)));
+        let passes = passes
+            .iter()
+            .filter_map(|(n, ms)| Some((&graph.passes.get(*n)?.value, *ms)));
         let rows = match rows {
-            Rows::Passes => passes.map(|(pass, ms)| (pass.name.value.clone(), ms)).collect(),
+            Rows::Passes => passes
+                .map(|(pass, ms)| (pass.name.value.clone(), ms))
+                .collect(),
             Rows::Stages | Rows::None => by_stage(passes.map(|(pass, ms)| (pass.stage(), ms))),
         };
         let mut title = vec![device.to_string(), format!("{}x{}", size[0], size[1])];
@@ -75,14 +79,28 @@ impl Timers {
             title.push(format!("off: {}", params.off.join(", ")));
         }
         let total = rows.iter().map(|r: &(String, f64)| r.1).sum();
-        Timers { title, rows, total, statistic: "median" }
+        Timers {
+            title,
+            rows,
+            total,
+            statistic: "median",
+        }
     }
 
     /// Marks the rows of passes that were skipped, by their numbers.
     pub fn mark_skipped(&mut self, graph: &Graph, numbers: &[usize]) {
-        let name = |number: &usize| graph.passes.get(*number).map(|p| p.value.name.value.as_str());
+        let name = |number: &usize| {
+            graph
+                .passes
+                .get(*number)
+                .map(|p| p.value.name.value.as_str())
+        };
         let skipped: Vec<&str> = numbers.iter().filter_map(name).collect();
-        for row in self.rows.iter_mut().filter(|row| skipped.contains(&row.0.as_str())) {
+        for row in self
+            .rows
+            .iter_mut()
+            .filter(|row| skipped.contains(&row.0.as_str()))
+        {
             row.0.push_str(SKIPPED);
         }
     }
@@ -99,19 +117,43 @@ pub fn draw(painter: &Painter, picture: Rect, right: bool, timers: &Timers, long
     let lines = timers.title.len() as f32 + 1.0;
     let room = ((picture.height() - 2.0 * MARGIN) / LINE - lines - 1.0).max(0.0) as usize;
     let rows = fitting(&timers.rows, room);
-    let size = Vec2::new(WIDTH.min(picture.width()), LINE * (lines + rows.len() as f32) + 2.0 * MARGIN);
-    let corner = if right { picture.right_top() - Vec2::new(size.x, 0.0) } else { picture.left_top() };
+    let size = Vec2::new(
+        WIDTH.min(picture.width()),
+        LINE * (lines + rows.len() as f32) + 2.0 * MARGIN,
+    );
+    let corner = if right {
+        picture.right_top() - Vec2::new(size.x, 0.0)
+    } else {
+        picture.left_top()
+    };
     let panel = Rect::from_min_size(corner, size);
     let painter = painter.with_clip_rect(panel.intersect(painter.clip_rect()));
     painter.rect_filled(panel, 0.0, Color32::from_black_alpha(176));
     let inner = panel.shrink(MARGIN);
-    let line = |n: f32| Rect::from_min_size(inner.min + Vec2::new(0.0, n * LINE), Vec2::new(inner.width(), LINE));
+    let line = |n: f32| {
+        Rect::from_min_size(
+            inner.min + Vec2::new(0.0, n * LINE),
+            Vec2::new(inner.width(), LINE),
+        )
+    };
     let (font, numbers) = (FontId::proportional(11.5), FontId::monospace(10.5));
     for (i, text) in timers.title.iter().enumerate() {
-        painter.text(line(i as f32).left_center(), Align2::LEFT_CENTER, text, font.clone(), Color32::from_gray(210));
+        painter.text(
+            line(i as f32).left_center(),
+            Align2::LEFT_CENTER,
+            text,
+            font.clone(),
+            Color32::from_gray(210),
+        );
     }
     let number = |at: Rect, ms: f64, color: Color32| {
-        painter.text(at.right_center(), Align2::RIGHT_CENTER, format!("{ms:.3}"), numbers.clone(), color);
+        painter.text(
+            at.right_center(),
+            Align2::RIGHT_CENTER,
+            format!("{ms:.3}"),
+            numbers.clone(),
+            color,
+        );
     };
     let total = line(timers.title.len() as f32);
     painter.text(
@@ -124,17 +166,30 @@ pub fn draw(painter: &Painter, picture: Rect, right: bool, timers: &Timers, long
     number(total, timers.total, Color32::WHITE);
     for (i, (name, ms)) in rows.iter().enumerate() {
         let at = line(lines + i as f32);
-        let part = if longest > 0.0 { (ms / longest).clamp(0.0, 1.0) as f32 } else { 0.0 };
-        let bar = Rect::from_min_size(at.min + Vec2::new(0.0, 1.0), Vec2::new(at.width() * part, LINE - 2.0));
-        painter.rect_filled(bar, 1.0, color(name.trim_end_matches(SKIPPED)).gamma_multiply(0.55));
-        let names = Rect::from_min_max(at.min, Pos2::new(at.right() - 44.0, at.bottom()));
-        painter.with_clip_rect(names.intersect(painter.clip_rect())).text(
-            at.left_center() + Vec2::new(3.0, 0.0),
-            Align2::LEFT_CENTER,
-            name,
-            font.clone(),
-            Color32::from_gray(235),
+        let part = if longest > 0.0 {
+            (ms / longest).clamp(0.0, 1.0) as f32
+        } else {
+            0.0
+        };
+        let bar = Rect::from_min_size(
+            at.min + Vec2::new(0.0, 1.0),
+            Vec2::new(at.width() * part, LINE - 2.0),
         );
+        painter.rect_filled(
+            bar,
+            1.0,
+            color(name.trim_end_matches(SKIPPED)).gamma_multiply(0.55),
+        );
+        let names = Rect::from_min_max(at.min, Pos2::new(at.right() - 44.0, at.bottom()));
+        painter
+            .with_clip_rect(names.intersect(painter.clip_rect()))
+            .text(
+                at.left_center() + Vec2::new(3.0, 0.0),
+                Align2::LEFT_CENTER,
+                name,
+                font.clone(),
+                Color32::from_gray(235),
+            );
         number(at, *ms, Color32::from_gray(235));
     }
 }
@@ -144,13 +199,22 @@ fn fitting(rows: &[(String, f64)], room: usize) -> Vec<(String, f64)> {
     if rows.len() <= room {
         return rows.to_vec();
     }
-    let Some(kept) = room.checked_sub(1) else { return Vec::new() };
+    let Some(kept) = room.checked_sub(1) else {
+        return Vec::new();
+    };
     let mut order: Vec<usize> = (0..rows.len()).collect();
     order.sort_by(|a, b| rows[*b].1.total_cmp(&rows[*a].1));
     let (mut first, rest) = (order[..kept].to_vec(), &order[kept..]);
     first.sort_unstable();
-    let others = (format!("{} others", rest.len()), rest.iter().map(|i| rows[*i].1).sum());
-    first.into_iter().map(|i| rows[i].clone()).chain([others]).collect()
+    let others = (
+        format!("{} others", rest.len()),
+        rest.iter().map(|i| rows[*i].1).sum(),
+    );
+    first
+        .into_iter()
+        .map(|i| rows[i].clone())
+        .chain([others])
+        .collect()
 }
 
 /// Times of passes, in order, as those of stages.
@@ -182,7 +246,13 @@ pub fn color(name: &str) -> Color32 {
 fn numbered(number: usize) -> Color32 {
     // Steps of the golden ratio never meet again; neighbours differ in brightness too.
     let hue = (number as f32 * 0.618_034).fract();
-    Hsva::new(hue, [0.75, 0.45, 0.9, 0.6, 0.35][number % 5], [0.95, 0.75, 0.6, 0.85, 0.55][number % 5], 1.0).into()
+    Hsva::new(
+        hue,
+        [0.75, 0.45, 0.9, 0.6, 0.35][number % 5],
+        [0.95, 0.75, 0.6, 0.85, 0.55][number % 5],
+        1.0,
+    )
+    .into()
 }
 
 /// A picture with times drawn onto it.
@@ -191,11 +261,17 @@ fn numbered(number: usize) -> Color32 {
 /// The device was lost, out of memory.
 pub fn stamped(gpu: &Arc<Gpu>, texels: &Texels, timers: &Timers) -> Result<Texels> {
     let [width, height, _] = texels.extent;
-    let rgba: Vec<u8> = picture::rgb8(texels).chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 255]).collect();
+    let rgba: Vec<u8> = picture::rgb8(texels)
+        .chunks_exact(3)
+        .flat_map(|p| [p[0], p[1], p[2], 255])
+        .collect();
     let mut painter = GpuPainter::offscreen(gpu, 1)?;
     let texture = painter.picture(0);
     let area = Rect::from_min_size(Pos2::ZERO, Vec2::new(width as f32, height as f32));
-    let input = RawInput { screen_rect: Some(area), ..RawInput::default() };
+    let input = RawInput {
+        screen_rect: Some(area),
+        ..RawInput::default()
+    };
     let context = egui::Context::default();
     let output = context.run_ui(input, |ui| {
         let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
@@ -204,10 +280,24 @@ pub fn stamped(gpu: &Arc<Gpu>, texels: &Texels, timers: &Timers) -> Result<Texel
         draw(&onto, area, false, timers, timers.longest());
     });
     let primitives = context.tessellate(output.shapes, 1.0);
-    let pixels = [Pixels { picture: 0, size: [width, height], source: PixelSource::Bytes(&rgba) }];
-    painter.paint((width, height), 1.0, output.textures_delta, &primitives, &pixels)?;
+    let pixels = [Pixels {
+        picture: 0,
+        size: [width, height],
+        source: PixelSource::Bytes(&rgba),
+    }];
+    painter.paint(
+        (width, height),
+        1.0,
+        output.textures_delta,
+        &primitives,
+        &pixels,
+    )?;
     let (_, bytes) = painter.read()?;
-    Ok(Texels { extent: texels.extent, format: Format::named("rgba8").unwrap_or(texels.format), bytes })
+    Ok(Texels {
+        extent: texels.extent,
+        format: Format::named("rgba8").unwrap_or(texels.format),
+        bytes,
+    })
 }
 
 #[cfg(test)]
@@ -217,11 +307,19 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_summed() {
-        let rows: Vec<(String, f64)> =
-            [("a", 1.0), ("b", 3.0), ("c", 0.5), ("d", 2.0)].map(|(n, ms)| (n.to_string(), ms)).to_vec();
+        let rows: Vec<(String, f64)> = [("a", 1.0), ("b", 3.0), ("c", 0.5), ("d", 2.0)]
+            .map(|(n, ms)| (n.to_string(), ms))
+            .to_vec();
         assert_eq!(fitting(&rows, 4), rows);
         let some = fitting(&rows, 3);
-        assert_eq!(some, [("b".into(), 3.0), ("d".into(), 2.0), ("2 others".to_string(), 1.5)]);
+        assert_eq!(
+            some,
+            [
+                ("b".into(), 3.0),
+                ("d".into(), 2.0),
+                ("2 others".to_string(), 1.5)
+            ]
+        );
         assert!(fitting(&rows, 0).is_empty());
     }
 
@@ -232,8 +330,18 @@ mod tests {
         assert_eq!(names.iter().map(|n| color(n)).collect::<Vec<_>>(), colours);
         // Of the first fifty: later ones come nearer.
         let first: Vec<Color32> = (0..50).map(numbered).collect();
-        let far = |a: Color32, b: Color32| a.to_array().iter().zip(b.to_array()).any(|(a, b)| a.abs_diff(b) > 3);
-        assert!(first.iter().enumerate().all(|(i, a)| first[..i].iter().all(|b| far(*a, *b))));
+        let far = |a: Color32, b: Color32| {
+            a.to_array()
+                .iter()
+                .zip(b.to_array())
+                .any(|(a, b)| a.abs_diff(b) > 3)
+        };
+        assert!(
+            first
+                .iter()
+                .enumerate()
+                .all(|(i, a)| first[..i].iter().all(|b| far(*a, *b)))
+        );
     }
 
     #[test]

@@ -34,13 +34,21 @@ impl<S: Clone + Default + PartialEq> References<S> {
         // The sort is stable.
         counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         let mut sources = counts.into_iter().map(|(source, _)| source.clone());
-        let found = UvSources { first: sources.next().unwrap_or_default(), second: sources.next() };
+        let found = UvSources {
+            first: sources.next().unwrap_or_default(),
+            second: sources.next(),
+        };
         (found, sources.next().is_some())
     }
 
     /// How a texture is looked up; one of a third source takes the first.
     pub fn lookup(&self, reference: Option<usize>, sources: &UvSources<S>) -> Lookup {
-        let Some((source, lookup)) = reference.and_then(|i| self.list.get(i)) else { return Lookup::default() };
-        Lookup { second_set: sources.second.as_ref() == Some(source), ..*lookup }
+        let Some((source, lookup)) = reference.and_then(|i| self.list.get(i)) else {
+            return Lookup::default();
+        };
+        Lookup {
+            second_set: sources.second.as_ref() == Some(source),
+            ..*lookup
+        }
     }
 }

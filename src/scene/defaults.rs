@@ -9,7 +9,11 @@ pub(super) const SKY: Vec3 = Vec3::new(0.6, 0.8, 1.0);
 
 /// Radiance of the sky over a model: none if it has lights of its own.
 pub(super) fn sky_over(model: &Scene) -> Vec3 {
-    if model.lights.is_empty() { SKY } else { Vec3::ZERO }
+    if model.lights.is_empty() {
+        SKY
+    } else {
+        Vec3::ZERO
+    }
 }
 
 /// Vertical field of view of default cameras [degrees].
@@ -34,7 +38,10 @@ pub(super) fn camera(scene: &Scene) -> Camera {
         return front;
     }
     let mut best = (f32::NEG_INFINITY, place(scene, 0, PLACES[0]));
-    for place in PLACES.iter().flat_map(|p| [place(scene, 0, *p), place(scene, 1, *p)]) {
+    for place in PLACES
+        .iter()
+        .flat_map(|p| [place(scene, 0, *p), place(scene, 1, *p)])
+    {
         let seen = scene.seen_by(&place);
         let far = seen.median.unwrap_or(0.0) / (place.target - place.eye).length();
         if seen.hits >= 0.25 && seen.backs <= 0.6 * seen.hits && far >= 0.15 {
@@ -55,34 +62,72 @@ fn front(scene: &Scene) -> Option<Camera> {
     let (low, high) = scene.bounds();
     let (centre, extent) = ((low + high) * 0.5, high - low);
     let diagonal = extent.length();
-    let axis = [Vec3::Z, Vec3::X, Vec3::Y].into_iter().find(|axis| extent.dot(*axis) < FLAT * diagonal)?;
-    let up = if axis == Vec3::Y { Vec3::NEG_Z } else { Vec3::Y };
+    let axis = [Vec3::Z, Vec3::X, Vec3::Y]
+        .into_iter()
+        .find(|axis| extent.dot(*axis) < FLAT * diagonal)?;
+    let up = if axis == Vec3::Y {
+        Vec3::NEG_Z
+    } else {
+        Vec3::Y
+    };
     let from = |side: f32| {
         // A picture is at least as wide as high.
         let away = 0.55 * extent.max_element() / (0.5 * FOV_Y).to_radians().tan();
         let eye = centre + axis * (side * away);
-        Camera { eye, target: centre, up, fov_y: FOV_Y, near: near_plane(diagonal), far: f32::INFINITY }
+        Camera {
+            eye,
+            target: centre,
+            up,
+            fov_y: FOV_Y,
+            near: near_plane(diagonal),
+            far: f32::INFINITY,
+        }
     };
     let (ahead, behind) = (from(1.0), from(-1.0));
-    Some(if scene.seen_by(&behind).backs < scene.seen_by(&ahead).backs { behind } else { ahead })
+    Some(
+        if scene.seen_by(&behind).backs < scene.seen_by(&ahead).backs {
+            behind
+        } else {
+            ahead
+        },
+    )
 }
 
 /// Where a camera is tried in a scene's bounds: along the axis from the middle, and above the ground, as parts of the extent.
 /// The last is outside, for single bodies.
-const PLACES: [(f32, f32); 8] =
-    [(0.32, 0.2), (-0.32, 0.2), (0.32, 0.5), (-0.32, 0.5), (0.46, 0.5), (-0.46, 0.5), (0.1, 0.5), (1.2, 0.5)];
+const PLACES: [(f32, f32); 8] = [
+    (0.32, 0.2),
+    (-0.32, 0.2),
+    (0.32, 0.5),
+    (-0.32, 0.5),
+    (0.46, 0.5),
+    (-0.46, 0.5),
+    (0.1, 0.5),
+    (1.2, 0.5),
+];
 
 /// A camera along the longer horizontal axis, or along the other one.
 fn place(scene: &Scene, which: usize, (along, above): (f32, f32)) -> Camera {
     let (low, high) = scene.bounds();
     let (centre, extent) = ((low + high) * 0.5, high - low);
-    let axis = if (extent.x >= extent.z) == (which == 0) { Vec3::X } else { Vec3::Z };
+    let axis = if (extent.x >= extent.z) == (which == 0) {
+        Vec3::X
+    } else {
+        Vec3::Z
+    };
     let length = extent.dot(axis);
     let mut eye = centre + axis * (along * length);
     eye.y = low.y + above * extent.y;
     let reach = if length > 0.0 { length } else { 1.0 };
     let target = eye - axis * along.signum() * reach.max(least_reach(eye));
-    Camera { eye, target, up: Vec3::Y, fov_y: FOV_Y, near: near_plane(extent.length()), far: f32::INFINITY }
+    Camera {
+        eye,
+        target,
+        up: Vec3::Y,
+        fov_y: FOV_Y,
+        near: near_plane(extent.length()),
+        far: f32::INFINITY,
+    }
 }
 
 /// Least distance of a camera's target that 32-bit numbers keep apart from its eye.

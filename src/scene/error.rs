@@ -12,7 +12,11 @@ pub enum SceneError {
     NotFound { spec: String, hint: String },
     /// A file could not be read.
     #[error("cannot read {}: {source}. {hint}", path.display())]
-    Read { path: PathBuf, hint: String, source: std::io::Error },
+    Read {
+        path: PathBuf,
+        hint: String,
+        source: std::io::Error,
+    },
     /// The callback of the opening said so.
     #[error("the opening of the scene was cancelled")]
     Cancelled,
@@ -21,10 +25,20 @@ pub enum SceneError {
     Model { path: PathBuf, message: String },
     /// A scene file has an error at a known place.
     #[error("{}:{line}:{column}: {message}", path.display())]
-    SceneFile { path: PathBuf, line: usize, column: usize, message: String },
+    SceneFile {
+        path: PathBuf,
+        line: usize,
+        column: usize,
+        message: String,
+    },
     /// A scene file names a model that is not on this machine.
     #[error("{}:{line}:{column}: {message}", path.display())]
-    NoModel { path: PathBuf, line: usize, column: usize, message: String },
+    NoModel {
+        path: PathBuf,
+        line: usize,
+        column: usize,
+        message: String,
+    },
     /// A picture of the sky that cannot be read; the message names its file.
     #[error("{message}")]
     Environment { message: String },

@@ -29,24 +29,48 @@ pub(super) fn check_extent(scene: &Scene, frame: Mat4) -> Result<(), String> {
 }
 
 /// [`check_extent`] of a scene whose bounds are known.
-pub(super) fn check_placed(scene: &Scene, (low, high): (Vec3, Vec3), frame: Mat4) -> Result<(), String> {
+pub(super) fn check_placed(
+    scene: &Scene,
+    (low, high): (Vec3, Vec3),
+    frame: Mat4,
+) -> Result<(), String> {
     let fits = |point: Vec3| frame.transform_point3(point).abs().max_element() <= MAX_COORDINATE;
     let far = |what: &str| {
         Err(format!(
             "{what} more than {MAX_COORDINATE:e} m from the origin: it cannot be rendered. Check its units and scale"
         ))
     };
-    if let Some(instance) = scene.instances.iter().find(|instance| !instance.transform.is_finite()) {
-        return Err(format!("'{}' has a placement that is not finite", instance.name));
+    if let Some(instance) = scene
+        .instances
+        .iter()
+        .find(|instance| !instance.transform.is_finite())
+    {
+        return Err(format!(
+            "'{}' has a placement that is not finite",
+            instance.name
+        ));
     }
-    let corner = |i: usize| Vec3::new([low, high][i & 1].x, [low, high][i >> 1 & 1].y, [low, high][i >> 2].z);
+    let corner = |i: usize| {
+        Vec3::new(
+            [low, high][i & 1].x,
+            [low, high][i >> 1 & 1].y,
+            [low, high][i >> 2].z,
+        )
+    };
     if !(0..8).map(corner).all(fits) {
-        return far(&format!("its triangles reach {:.1e} m,", low.abs().max(high.abs()).max_element()));
+        return far(&format!(
+            "its triangles reach {:.1e} m,",
+            low.abs().max(high.abs()).max_element()
+        ));
     }
     if let Some(light) = scene.lights.iter().find(|light| !fits(light.position)) {
         return far(&format!("its light '{}' is", light.name));
     }
-    match scene.cameras.iter().find(|(_, camera)| !fits(camera.eye) || !fits(camera.target)) {
+    match scene
+        .cameras
+        .iter()
+        .find(|(_, camera)| !fits(camera.eye) || !fits(camera.target))
+    {
         Some((name, _)) => far(&format!("its camera '{name}' is")),
         None => Ok(()),
     }

@@ -41,7 +41,11 @@ pub struct Lookups {
 impl Lookup {
     /// The set that is used, of two sets of texture coordinates.
     pub fn set(&self, sets: Vec4) -> Vec2 {
-        if self.second_set { Vec2::new(sets.z, sets.w) } else { Vec2::new(sets.x, sets.y) }
+        if self.second_set {
+            Vec2::new(sets.z, sets.w)
+        } else {
+            Vec2::new(sets.x, sets.y)
+        }
     }
 
     /// [`Lookup::set`], between 0 and 1 along axes that do not repeat.
@@ -69,11 +73,20 @@ mod tests {
 
     #[test]
     fn coordinates_fold_by_axis_and_set() {
-        let lookup = Lookup { wrap: [Wrap::Clamp, Wrap::Mirror], second_set: true, nearest: false };
-        let near = |place: Vec2, u: f32, v: f32| assert!(place.distance(Vec2::new(u, v)) < 1e-6, "{place}");
+        let lookup = Lookup {
+            wrap: [Wrap::Clamp, Wrap::Mirror],
+            second_set: true,
+            nearest: false,
+        };
+        let near = |place: Vec2, u: f32, v: f32| {
+            assert!(place.distance(Vec2::new(u, v)) < 1e-6, "{place}")
+        };
         near(lookup.place(Vec4::new(9.0, 9.0, -0.5, 1.25)), 0.0, 0.75);
         near(lookup.place(Vec4::new(9.0, 9.0, 1.5, -0.25)), 1.0, 0.25);
         assert!(lookup.place(Vec4::new(0.0, 0.0, 3.0, 3.0)).max_element() < 1.0);
-        assert_eq!(Lookup::default().place(Vec4::new(-1.5, 2.5, 0.0, 0.0)), Vec2::new(-1.5, 2.5));
+        assert_eq!(
+            Lookup::default().place(Vec4::new(-1.5, 2.5, 0.0, 0.0)),
+            Vec2::new(-1.5, 2.5)
+        );
     }
 }

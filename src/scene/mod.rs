@@ -42,7 +42,9 @@ pub use limits::MAX_COORDINATE;
 pub use lookup::{Lookup, Lookups, Wrap};
 pub use mesh::Side;
 pub(crate) use motion::in_world;
-pub use motion::{Curve, Deformer, Influence, Interpolation, Joint, Keyframe, Morph, Mover, Rest, Track, Value};
+pub use motion::{
+    Curve, Deformer, Influence, Interpolation, Joint, Keyframe, Morph, Mover, Rest, Track, Value,
+};
 pub(crate) use shuffle::splitmix;
 pub use split::MAX_TRIANGLES;
 pub use texture::{MAX_TEXTURE_KINDS, SHARED_EDGE, SmallPicture, TextureKind, keep_their_size};
@@ -100,7 +102,10 @@ pub struct Vertex {
 impl Default for Vertex {
     /// White, all else 0.
     fn default() -> Self {
-        Vertex { color: [1.0; 4], ..Vertex::zeroed() }
+        Vertex {
+            color: [1.0; 4],
+            ..Vertex::zeroed()
+        }
     }
 }
 
@@ -212,7 +217,11 @@ impl Material {
     /// 1 unless the author says otherwise.
     pub fn dielectric(&self) -> Vec4 {
         let n = f64::from(self.ior);
-        let from_index = if n == 0.0 { 1.0 } else { ((n - 1.0) / (n + 1.0)).powi(2) as f32 };
+        let from_index = if n == 0.0 {
+            1.0
+        } else {
+            ((n - 1.0) / (n + 1.0)).powi(2) as f32
+        };
         ((from_index * self.specular_color).min(Vec3::ONE) * self.specular).extend(self.specular)
     }
 }

@@ -34,7 +34,10 @@ const MAX_BYTES: u64 = 4 << 30;
 
 /// Geometry, materials and textures of an OBJ file; no lights, cameras or sky.
 pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
-    let fail = |message: String| SceneError::Model { path: path.into(), message };
+    let fail = |message: String| SceneError::Model {
+        path: path.into(),
+        message,
+    };
     progress.step("reading", 0.0)?;
     let bytes = read_input(path, MAX_BYTES).map_err(|source| SceneError::Read {
         path: path.into(),
@@ -52,17 +55,35 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     progress.step("textures", 0.5)?;
     let (mut textures, texture_warnings) = requests.load(progress)?;
     let owners: Vec<usize> = materials.iter().map(|(library, _)| *library).collect();
-    let asked = materials.iter_mut().map(|(_, read)| &mut read.asked).collect();
-    decide(asked, &mut textures, &material::WORDS, |number, name, what| {
-        if let Some(library) = owners.get(number).and_then(|owner| libraries.get_mut(*owner)) {
-            library.warnings.add(what, shown(name));
-        }
-    });
+    let asked = materials
+        .iter_mut()
+        .map(|(_, read)| &mut read.asked)
+        .collect();
+    decide(
+        asked,
+        &mut textures,
+        &material::WORDS,
+        |number, name, what| {
+            if let Some(library) = owners
+                .get(number)
+                .and_then(|owner| libraries.get_mut(*owner))
+            {
+                library.warnings.add(what, shown(name));
+            }
+        },
+    );
 
     progress.step("meshes", 0.7)?;
     let surfaces = surfaces(&geometry.used, &libraries, &materials, &mut warnings);
-    let mut materials: Vec<Material> = materials.into_iter().map(|(_, read)| read.asked.material).collect();
-    if geometry.pieces.iter().any(|piece| surface_of(&surfaces, piece.material).material as usize == materials.len()) {
+    let mut materials: Vec<Material> = materials
+        .into_iter()
+        .map(|(_, read)| read.asked.material)
+        .collect();
+    if geometry
+        .pieces
+        .iter()
+        .any(|piece| surface_of(&surfaces, piece.material).material as usize == materials.len())
+    {
         materials.push(grey(!geometry.colors.is_empty()));
     }
     let raw = meshes::build(&geometry, &surfaces, &mut warnings, progress).map_err(fail)?;
@@ -72,28 +93,49 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     let file = path.display().to_string();
     let mut told = warnings.lines(&file);
     told.extend(dropped.warning(&file));
-    told.extend(libraries.iter().flat_map(|library| library.warnings.lines(library.path.display())));
+    told.extend(
+        libraries
+            .iter()
+            .flat_map(|library| library.warnings.lines(library.path.display())),
+    );
     told.extend(texture_warnings);
-    let meshes: Vec<Mesh> = meshes.into_iter().filter(|mesh| !mesh.submeshes.is_empty()).collect();
+    let meshes: Vec<Mesh> = meshes
+        .into_iter()
+        .filter(|mesh| !mesh.submeshes.is_empty())
+        .collect();
     let instances = meshes.iter().enumerate().map(|(i, mesh)| Instance {
         name: mesh.name.clone(),
         mesh: i as u32,
         transform: Mat4::IDENTITY,
         mover: None,
     });
-    Ok(Scene { instances: instances.collect(), meshes, materials, textures, warnings: told, ..Scene::default() })
+    Ok(Scene {
+        instances: instances.collect(),
+        meshes,
+        materials,
+        textures,
+        warnings: told,
+        ..Scene::default()
+    })
 }
 
 /// A material with the number of its library.
 type Owned = (usize, Read);
 
 /// The materials of all libraries, in their order.
-fn read_materials(libraries: &mut [Library], finder: &mut Finder, requests: &mut Requests) -> Vec<Owned> {
+fn read_materials(
+    libraries: &mut [Library],
+    finder: &mut Finder,
+    requests: &mut Requests,
+) -> Vec<Owned> {
     let mut materials = Vec::new();
     for (number, library) in libraries.iter_mut().enumerate() {
         let mut pictures = Pictures { finder, requests };
         for definition in &library.materials {
-            materials.push((number, material::read(definition, &mut pictures, &mut library.warnings)));
+            materials.push((
+                number,
+                material::read(definition, &mut pictures, &mut library.warnings),
+            ));
         }
     }
     materials
@@ -123,14 +165,25 @@ fn surfaces(
             by_name.entry(name).or_insert(index);
         }
     }
-    let none = Surface { material: materials.len() as u32, ..Surface::default() };
+    let none = Surface {
+        material: materials.len() as u32,
+        ..Surface::default()
+    };
     let of = |name: &String| {
-        let found = by_name.get(name.as_str()).or_else(|| by_name.get(without_comment(name)));
-        let Some((index, (_, read))) = found.and_then(|index| Some((*index, materials.get(*index)?))) else {
+        let found = by_name
+            .get(name.as_str())
+            .or_else(|| by_name.get(without_comment(name)));
+        let Some((index, (_, read))) =
+            found.and_then(|index| Some((*index, materials.get(*index)?)))
+        else {
             warnings.add("materials that no library defines are grey", shown(name));
             return none;
         };
-        Surface { material: index as u32, placement: read.placement, left_out: read.asked.material.is_left_out() }
+        Surface {
+            material: index as u32,
+            placement: read.placement,
+            left_out: read.asked.material.is_left_out(),
+        }
     };
     used.iter().map(of).chain([none]).collect()
 }

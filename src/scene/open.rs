@@ -26,7 +26,10 @@ impl Scene {
     /// a model without cameras gets one. `progress` is called with
     /// what is being done and the share done, 0 to 1, about 50 times a second, by the thread that called. When it
     /// answers `Break`, the opening ends at once with [`SceneError::Cancelled`].
-    pub fn open(spec: &str, progress: &dyn Fn(&str, f32) -> ControlFlow<()>) -> Result<Scene, SceneError> {
+    pub fn open(
+        spec: &str,
+        progress: &dyn Fn(&str, f32) -> ControlFlow<()>,
+    ) -> Result<Scene, SceneError> {
         Scene::open_with_files(spec, progress).0
     }
 
@@ -61,7 +64,12 @@ fn open_watched(
             return Err(SceneError::Cancelled);
         }
         match result.recv_timeout(ASK) {
-            Ok(loaded) => return loaded.map(with_size_told).map(with_kinds_told).map(Scene::with_seen_distance),
+            Ok(loaded) => {
+                return loaded
+                    .map(with_size_told)
+                    .map(with_kinds_told)
+                    .map(Scene::with_seen_distance);
+            }
             Err(mpsc::RecvTimeoutError::Timeout) => {}
             Err(mpsc::RecvTimeoutError::Disconnected) => break,
         }
@@ -84,7 +92,10 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
         return file::load(path, progress);
     }
     if path.extension().is_none() && !path.exists() {
-        return Err(SceneError::NotFound { spec: spec.into(), hint: builtin::hint(spec) });
+        return Err(SceneError::NotFound {
+            spec: spec.into(),
+            hint: builtin::hint(spec),
+        });
     }
     let mut scene = load_model(path, None, progress)?;
     scene.sky = defaults::sky_over(&scene);
@@ -100,31 +111,54 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
 }
 
 /// A model with what its file says and no more; `clip`: the animation that is played, where it is not the first.
-pub(super) fn load_model(path: &Path, clip: Option<&str>, progress: Progress) -> Result<Scene, SceneError> {
+pub(super) fn load_model(
+    path: &Path,
+    clip: Option<&str>,
+    progress: Progress,
+) -> Result<Scene, SceneError> {
     progress.reads(path);
     let reader = match ending(path).as_str() {
         "obj" if clip.is_some() => {
             let message = "OBJ files have no clips. Leave `clip` out".into();
-            return Err(SceneError::Model { path: path.into(), message });
+            return Err(SceneError::Model {
+                path: path.into(),
+                message,
+            });
         }
         "obj" => |path: &Path, _: Option<&str>, progress: Progress| obj::load(path, progress),
         "gltf" | "glb" => gltf::load,
         "fbx" => fbx::load,
         _ => {
             let hint = "the file's extension must be .ron, .obj, .gltf, .glb or .fbx; convert other formats to glTF";
-            return Err(SceneError::NotFound { spec: path.display().to_string(), hint: hint.into() });
+            return Err(SceneError::NotFound {
+                spec: path.display().to_string(),
+                hint: hint.into(),
+            });
         }
     };
     let mut scene = caught(|| reader(path, clip, progress)).unwrap_or_else(|message| {
         let message = format!("{message}. The file is damaged; export it again");
-        Err(SceneError::Model { path: path.into(), message })
+        Err(SceneError::Model {
+            path: path.into(),
+            message,
+        })
     })?;
-    check_extent(&scene, Mat4::IDENTITY).map_err(|message| SceneError::Model { path: path.into(), message })?;
+    check_extent(&scene, Mat4::IDENTITY).map_err(|message| SceneError::Model {
+        path: path.into(),
+        message,
+    })?;
     // What its materials leave out was told.
     if scene.triangle_count() == 0 && !scene.materials.iter().any(Material::is_left_out) {
-        scene.warnings.push(format!("{}: no triangles: there is nothing to see", path.display()));
+        scene.warnings.push(format!(
+            "{}: no triangles: there is nothing to see",
+            path.display()
+        ));
     }
-    scene.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    scene.name = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
     Ok(scene)
 }
 
@@ -137,24 +171,46 @@ mod tests {
     #[test]
     fn all_files_of_a_scene_are_named_though_it_fails() {
         let folder = tempfile::tempdir().unwrap();
-        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        let write =
+            |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
         write("a.ron", "(models: [(file: \"a.obj\"), (file: \"b.gltf\")])");
-        write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+        write(
+            "a.obj",
+            "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n",
+        );
         write("a.mtl", "newmtl m\nmap_Kd gone.png\n");
         let buffers = "\"buffers\": [{\"uri\": \"b.bin\", \"byteLength\": 4}]";
-        write("b.gltf", &format!("{{\"asset\": {{\"version\": \"2.0\"}}, {buffers}, \"meshes\": 7}}"));
-        let open =
-            || Scene::open_with_files(folder.path().join("a.ron").to_str().unwrap(), &|_, _| ControlFlow::Continue(()));
+        write(
+            "b.gltf",
+            &format!("{{\"asset\": {{\"version\": \"2.0\"}}, {buffers}, \"meshes\": 7}}"),
+        );
+        let open = || {
+            Scene::open_with_files(folder.path().join("a.ron").to_str().unwrap(), &|_, _| {
+                ControlFlow::Continue(())
+            })
+        };
         let names = |files: Vec<PathBuf>| -> Vec<String> {
-            files.iter().map(|f| f.file_name().unwrap().to_string_lossy().into_owned()).collect()
+            files
+                .iter()
+                .map(|f| f.file_name().unwrap().to_string_lossy().into_owned())
+                .collect()
         };
         let (scene, files) = open();
         assert!(scene.is_err());
-        assert_eq!(names(files), ["a.mtl", "a.obj", "a.ron", "b.gltf", "gone.png"]);
-        write("b.gltf", &format!("{{\"asset\": {{\"version\": \"2.0\"}}, {buffers}}}"));
+        assert_eq!(
+            names(files),
+            ["a.mtl", "a.obj", "a.ron", "b.gltf", "gone.png"]
+        );
+        write(
+            "b.gltf",
+            &format!("{{\"asset\": {{\"version\": \"2.0\"}}, {buffers}}}"),
+        );
         let (scene, files) = open();
         assert!(scene.is_ok(), "{:?}", scene.err());
-        assert_eq!(names(files), ["a.mtl", "a.obj", "a.ron", "b.bin", "b.gltf", "gone.png"]);
+        assert_eq!(
+            names(files),
+            ["a.mtl", "a.obj", "a.ron", "b.bin", "b.gltf", "gone.png"]
+        );
     }
 
     #[test]
@@ -171,12 +227,19 @@ mod tests {
         std::thread::scope(|scope| {
             let worker = scope.spawn(|| load(&spec, Progress::new(&watch)));
             std::thread::sleep(Duration::from_millis(40));
-            assert!(!worker.is_finished(), "the model is too small for this test");
+            assert!(
+                !worker.is_finished(),
+                "the model is too small for this test"
+            );
             assert_eq!(watch.now().0, "reading");
             watch.stop();
             let stopped = Instant::now();
             assert!(worker.join().unwrap().is_err());
-            assert!(stopped.elapsed() < Duration::from_millis(500), "{:?}", stopped.elapsed());
+            assert!(
+                stopped.elapsed() < Duration::from_millis(500),
+                "{:?}",
+                stopped.elapsed()
+            );
         });
     }
 }

@@ -18,17 +18,27 @@ pub(super) struct Watch {
 impl Watch {
     /// Before anything was done.
     pub fn new(what: &str) -> Watch {
-        Watch { stopped: AtomicBool::new(false), now: Mutex::new((what.to_owned(), 0.0)), files: Mutex::default() }
+        Watch {
+            stopped: AtomicBool::new(false),
+            now: Mutex::new((what.to_owned(), 0.0)),
+            files: Mutex::default(),
+        }
     }
 
     /// What is being done, and the share done.
     pub fn now(&self) -> (String, f32) {
-        self.now.lock().map_or_else(|e| e.into_inner().clone(), |now| now.clone())
+        self.now
+            .lock()
+            .map_or_else(|e| e.into_inner().clone(), |now| now.clone())
     }
 
     /// All files that were read or looked for until now, sorted.
     pub fn files(&self) -> Vec<PathBuf> {
-        self.files.lock().map_or_else(|e| e.into_inner().clone(), |files| files.clone()).into_iter().collect()
+        self.files
+            .lock()
+            .map_or_else(|e| e.into_inner().clone(), |files| files.clone())
+            .into_iter()
+            .collect()
     }
 
     /// Nobody waits for the scene any more.
@@ -48,13 +58,21 @@ pub(super) struct Progress<'a> {
 impl<'a> Progress<'a> {
     /// All of the work.
     pub fn new(watch: &'a Watch) -> Progress<'a> {
-        Progress { watch, from: 0.0, size: 1.0 }
+        Progress {
+            watch,
+            from: 0.0,
+            size: 1.0,
+        }
     }
 
     /// One of `count` equal shares of this one.
     pub fn share(self, index: usize, count: usize) -> Progress<'a> {
         let size = self.size / count as f32;
-        Progress { from: self.from + index as f32 * size, size, ..self }
+        Progress {
+            from: self.from + index as f32 * size,
+            size,
+            ..self
+        }
     }
 
     /// Says what is begun, and how much is done, 0 to 1. An error when nobody waits any more.
@@ -62,7 +80,11 @@ impl<'a> Progress<'a> {
         if let Ok(mut now) = self.watch.now.lock() {
             *now = (what.to_owned(), self.from + done * self.size);
         }
-        if self.stopped() { Err(SceneError::Cancelled) } else { Ok(()) }
+        if self.stopped() {
+            Err(SceneError::Cancelled)
+        } else {
+            Ok(())
+        }
     }
 
     /// Notes a file that is read or looked for: another scene may come of it when it changes.

@@ -22,7 +22,10 @@ pub(super) struct Seen {
 impl Scene {
     /// With [`Scene::seen_distance`] of its camera `default`, or of the first where none is called so.
     pub(super) fn with_seen_distance(mut self) -> Scene {
-        let camera = self.cameras.get("default").or_else(|| self.cameras.values().next());
+        let camera = self
+            .cameras
+            .get("default")
+            .or_else(|| self.cameras.values().next());
         self.seen_distance = camera.and_then(|c| self.seen_by(c).median).unwrap_or(0.0);
         self
     }
@@ -34,7 +37,9 @@ impl Scene {
         let stride = self.triangle_count().div_ceil(TRIANGLES).max(1);
         let mut number = 0;
         for (i, instance) in self.instances.iter().enumerate() {
-            let Some(mesh) = self.meshes.get(instance.mesh as usize) else { continue };
+            let Some(mesh) = self.meshes.get(instance.mesh as usize) else {
+                continue;
+            };
             let world = self.instance_transform(i, 0.0);
             let turned = world.determinant().signum();
             for corners in mesh.indices.chunks_exact(3) {
@@ -42,8 +47,8 @@ impl Scene {
                 if number % stride != 0 {
                     continue;
                 }
-                let Some([v0, v1, v2]) =
-                    corners_of(mesh, corners).map(|t| t.map(|p| Vec3A::from(world.transform_point3(p) - camera.eye)))
+                let Some([v0, v1, v2]) = corners_of(mesh, corners)
+                    .map(|t| t.map(|p| Vec3A::from(world.transform_point3(p) - camera.eye)))
                 else {
                     continue;
                 };
@@ -69,19 +74,31 @@ impl Scene {
 }
 
 fn corners_of(mesh: &super::Mesh, indices: &[u32]) -> Option<[Vec3; 3]> {
-    let corner = |k: usize| mesh.vertices.get(indices[k] as usize).map(|v| Vec3::from(v.position));
+    let corner = |k: usize| {
+        mesh.vertices
+            .get(indices[k] as usize)
+            .map(|v| Vec3::from(v.position))
+    };
     Some([corner(0)?, corner(1)?, corner(2)?])
 }
 
 /// From the camera, which is the origin.
 fn rays(camera: &Camera) -> Vec<Ray> {
-    let ahead = (camera.target - camera.eye).try_normalize().unwrap_or(Vec3::NEG_Z);
-    let right = ahead.cross(camera.up).try_normalize().unwrap_or_else(|| ahead.any_orthonormal_vector());
+    let ahead = (camera.target - camera.eye)
+        .try_normalize()
+        .unwrap_or(Vec3::NEG_Z);
+    let right = ahead
+        .cross(camera.up)
+        .try_normalize()
+        .unwrap_or_else(|| ahead.any_orthonormal_vector());
     let half = (0.5 * camera.fov_y.clamp(1.0, 170.0).to_radians()).tan();
     let (up, right) = (right.cross(ahead) * half, right * half * 16.0 / 9.0);
     let middle = |i: usize, n: usize| (2 * i + 1) as f32 / n as f32 - 1.0;
     (0..RAYS.0 * RAYS.1)
-        .map(|i| (ahead + up * middle(i / RAYS.1, RAYS.0) + right * middle(i % RAYS.1, RAYS.1)).normalize())
+        .map(|i| {
+            (ahead + up * middle(i / RAYS.1, RAYS.0) + right * middle(i % RAYS.1, RAYS.1))
+                .normalize()
+        })
         .map(|d| Ray::new_inf(Vec3A::ZERO, Vec3A::from(d)))
         .collect()
 }

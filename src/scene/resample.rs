@@ -15,15 +15,27 @@ impl TextureFormat {
 impl Texture {
     /// The same picture in RGBA8 at `width` x `height`, with new mips. A texture that cannot be decoded becomes magenta.
     pub fn resampled(&self, width: u32, height: u32) -> Texture {
-        let format = if self.format.is_srgb() { TextureFormat::Rgba8Srgb } else { TextureFormat::Rgba8Unorm };
+        let format = if self.format.is_srgb() {
+            TextureFormat::Rgba8Srgb
+        } else {
+            TextureFormat::Rgba8Unorm
+        };
         let texels = first_level_rgba(self).ok().map(|t| t.into_owned());
         let image = texels.and_then(|t| RgbaImage::from_raw(self.width, self.height, t));
-        let image = image.unwrap_or_else(|| RgbaImage::from_pixel(1, 1, image::Rgba([255, 0, 255, 255])));
+        let image =
+            image.unwrap_or_else(|| RgbaImage::from_pixel(1, 1, image::Rgba([255, 0, 255, 255])));
         let sized = if image.dimensions() == (width, height) {
             image
         } else {
             resize(&image, width, height, FilterType::Triangle)
         };
-        texture_from_rgba(&self.name, width, height, sized.into_raw(), format, Filter::Plain)
+        texture_from_rgba(
+            &self.name,
+            width,
+            height,
+            sized.into_raw(),
+            format,
+            Filter::Plain,
+        )
     }
 }

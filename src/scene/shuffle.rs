@@ -9,7 +9,8 @@ impl Scene {
         let mut state = seed;
         for mesh in &mut scene.meshes {
             for submesh in &mesh.submeshes {
-                let range = submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
+                let range = submesh.first_index as usize
+                    ..(submesh.first_index + submesh.index_count) as usize;
                 let triangles = mesh.indices[range].as_chunks_mut::<3>().0;
                 // Fisher and Yates, from the end.
                 for i in (1..triangles.len()).rev() {

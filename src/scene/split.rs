@@ -20,7 +20,10 @@ impl Scene {
     pub fn split_triangles(&self, max_edge: f32) -> Scene {
         let mut scene = self.clone();
         if max_edge.is_nan() || max_edge <= 0.0 {
-            scene.warnings.push(format!("{}: triangles not split, {max_edge} m is no edge length", self.name));
+            scene.warnings.push(format!(
+                "{}: triangles not split, {max_edge} m is no edge length",
+                self.name
+            ));
             return scene;
         }
         let placements = |mesh: usize| -> Vec<Mat3> { self.placed_at_rest(mesh).collect() };
@@ -30,7 +33,8 @@ impl Scene {
             let too_long = |a: Vec3, b: Vec3| {
                 // In f64 and from the difference, so that both directions of an edge agree.
                 let edge = b - a;
-                axes.iter().any(|axes| (*axes * edge).as_dvec3().length() > f64::from(max_edge))
+                axes.iter()
+                    .any(|axes| (*axes * edge).as_dvec3().length() > f64::from(max_edge))
             };
             let before = scene.meshes[i].triangle_count();
             let limit = before + budget / axes.len().max(1);
@@ -54,8 +58,12 @@ impl Scene {
     /// edges of `max_edge` has more than the area of the equilateral one, and there are half as many vertices as triangles.
     pub fn least_split_bytes(&self, max_edge: f32) -> f64 {
         let largest = 0.25 * 3f64.sqrt() * f64::from(max_edge).powi(2);
-        let triangles =
-            |i: usize| self.placed_at_rest(i).map(|axes| area(&self.meshes[i], &axes)).fold(0.0, f64::max) / largest;
+        let triangles = |i: usize| {
+            self.placed_at_rest(i)
+                .map(|axes| area(&self.meshes[i], &axes))
+                .fold(0.0, f64::max)
+                / largest
+        };
         (0..self.meshes.len()).map(triangles).sum::<f64>() * 0.5 * size_of::<Vertex>() as f64
     }
 }
@@ -63,7 +71,11 @@ impl Scene {
 impl Scene {
     /// The axes of each instance of a mesh, at 0 s.
     fn placed_at_rest(&self, mesh: usize) -> impl Iterator<Item = Mat3> + '_ {
-        let of_mesh = self.instances.iter().enumerate().filter(move |(_, instance)| instance.mesh as usize == mesh);
+        let of_mesh = self
+            .instances
+            .iter()
+            .enumerate()
+            .filter(move |(_, instance)| instance.mesh as usize == mesh);
         of_mesh.map(|(i, _)| Mat3::from_mat4(self.instance_transform(i, 0.0)))
     }
 }
@@ -74,7 +86,12 @@ fn area(mesh: &Mesh, axes: &Mat3) -> f64 {
         let [a, b, c] = t.map(|i| *axes * Vec3::from_array(mesh.vertices[i as usize].position));
         0.5 * (b - a).as_dvec3().cross((c - a).as_dvec3()).length()
     };
-    mesh.indices.as_chunks::<3>().0.par_iter().map(triangle).sum()
+    mesh.indices
+        .as_chunks::<3>()
+        .0
+        .par_iter()
+        .map(triangle)
+        .sum()
 }
 
 /// The mesh split round by round, and what its new vertices are in the middle of; none when it would have more triangles
@@ -86,8 +103,13 @@ fn split_mesh(
 ) -> Option<(Mesh, Vec<[u32; 2]>)> {
     let (mut mesh, mut halves) = (mesh.clone(), Vec::new());
     loop {
-        let marks: Vec<[bool; 3]> =
-            mesh.indices.as_chunks::<3>().0.par_iter().map(|t| long_edges(&mesh, t, too_long)).collect();
+        let marks: Vec<[bool; 3]> = mesh
+            .indices
+            .as_chunks::<3>()
+            .0
+            .par_iter()
+            .map(|t| long_edges(&mesh, t, too_long))
+            .collect();
         let added: usize = marks.iter().flatten().filter(|&&m| m).count();
         if added == 0 {
             return Some((mesh, halves));
@@ -100,17 +122,30 @@ fn split_mesh(
 }
 
 /// Which of the edges 0-1, 1-2 and 2-0 are too long.
-fn long_edges(mesh: &Mesh, triangle: &[u32; 3], too_long: impl Fn(Vec3, Vec3) -> bool) -> [bool; 3] {
+fn long_edges(
+    mesh: &Mesh,
+    triangle: &[u32; 3],
+    too_long: impl Fn(Vec3, Vec3) -> bool,
+) -> [bool; 3] {
     let p = triangle.map(|i| Vec3::from_array(mesh.vertices[i as usize].position));
-    [too_long(p[0], p[1]), too_long(p[1], p[2]), too_long(p[2], p[0])]
+    [
+        too_long(p[0], p[1]),
+        too_long(p[1], p[2]),
+        too_long(p[2], p[0]),
+    ]
 }
 
 fn split_once(mesh: &Mesh, marks: &[[bool; 3]], halves: &mut Vec<[u32; 2]>) -> Mesh {
-    let mut split = Mesh { name: mesh.name.clone(), vertices: mesh.vertices.clone(), ..Mesh::default() };
+    let mut split = Mesh {
+        name: mesh.name.clone(),
+        vertices: mesh.vertices.clone(),
+        ..Mesh::default()
+    };
     let mut midpoints: HashMap<(u32, u32), u32> = HashMap::new();
     for submesh in &mesh.submeshes {
         let first_index = split.indices.len() as u32;
-        let triangles = submesh.first_index as usize / 3..(submesh.first_index + submesh.index_count) as usize / 3;
+        let triangles = submesh.first_index as usize / 3
+            ..(submesh.first_index + submesh.index_count) as usize / 3;
         for i in triangles {
             let triangle = [0, 1, 2].map(|k| mesh.indices[3 * i + k]);
             split_triangle(&mut split, &mut midpoints, triangle, marks[i]);
@@ -121,14 +156,22 @@ fn split_once(mesh: &Mesh, marks: &[[bool; 3]], halves: &mut Vec<[u32; 2]>) -> M
             ..*submesh
         });
     }
-    let mut ends: Vec<(u32, [u32; 2])> = midpoints.into_iter().map(|((a, b), middle)| (middle, [a, b])).collect();
+    let mut ends: Vec<(u32, [u32; 2])> = midpoints
+        .into_iter()
+        .map(|((a, b), middle)| (middle, [a, b]))
+        .collect();
     ends.sort_unstable();
     halves.extend(ends.into_iter().map(|(_, ends)| ends));
     split
 }
 
 /// Replaces a triangle by 1 to 4 with the same winding, by which of its edges are marked.
-fn split_triangle(mesh: &mut Mesh, midpoints: &mut HashMap<(u32, u32), u32>, t: [u32; 3], marks: [bool; 3]) {
+fn split_triangle(
+    mesh: &mut Mesh,
+    midpoints: &mut HashMap<(u32, u32), u32>,
+    t: [u32; 3],
+    marks: [bool; 3],
+) {
     let count = marks.iter().filter(|&&m| m).count();
     // Turned so that one marked edge is 0-1, or two marked ones are 0-1 and 1-2.
     let turn = match count {
@@ -162,7 +205,8 @@ fn split_triangle(mesh: &mut Mesh, midpoints: &mut HashMap<(u32, u32), u32>, t: 
         }
         _ => {
             let (ab, bc, ca) = (middle(mesh, a, b), middle(mesh, b, c), middle(mesh, c, a));
-            mesh.indices.extend([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca]);
+            mesh.indices
+                .extend([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca]);
         }
     }
 }
@@ -175,7 +219,8 @@ fn length(mesh: &Mesh, a: u32, b: u32) -> f32 {
 pub(super) fn halfway(a: &Vertex, b: &Vertex) -> Vertex {
     let middle = |a: [f32; 3], b: [f32; 3]| (Vec3::from_array(a) + Vec3::from_array(b)) * 0.5;
     let normal = middle(a.normal, b.normal).normalize_or(Vec3::from_array(a.normal));
-    let tangent = middle(xyz(a.tangent), xyz(b.tangent)).normalize_or(Vec3::from_array(xyz(a.tangent)));
+    let tangent =
+        middle(xyz(a.tangent), xyz(b.tangent)).normalize_or(Vec3::from_array(xyz(a.tangent)));
     let between = |a: [f32; 2], b: [f32; 2]| [(a[0] + b[0]) * 0.5, (a[1] + b[1]) * 0.5];
     Vertex {
         position: middle(a.position, b.position).to_array(),

@@ -19,7 +19,11 @@ impl Scene {
     /// W/m² as the scene file has them.
     pub fn description(&self) -> Value {
         let (low, high) = self.bounds();
-        let texture = |number: Option<u32>| number.and_then(|n| self.textures.get(n as usize)).map(|t| &t.name);
+        let texture = |number: Option<u32>| {
+            number
+                .and_then(|n| self.textures.get(n as usize))
+                .map(|t| &t.name)
+        };
         let material = |m: &Material| {
             json!({
                 "name": m.name, "base_color": m.base_color.to_array(), "roughness": m.roughness, "metallic": m.metallic,
@@ -71,8 +75,16 @@ impl Scene {
         writeln!(out, "scene      {}", self.name)?;
         writeln!(out, "triangles  {}", self.triangle_count())?;
         writeln!(out, "vertices   {vertices} in {} meshes", self.meshes.len())?;
-        writeln!(out, "instances  {} ({moving} animated)", self.instances.len())?;
-        writeln!(out, "bounds     {low:.3} to {high:.3}, {:.2} x {:.2} x {:.2} m", size.x, size.y, size.z)?;
+        writeln!(
+            out,
+            "instances  {} ({moving} animated)",
+            self.instances.len()
+        )?;
+        writeln!(
+            out,
+            "bounds     {low:.3} to {high:.3}, {:.2} x {:.2} x {:.2} m",
+            size.x, size.y, size.z
+        )?;
         writeln!(out, "sky        radiance {:.3}", self.sky)?;
         if let Some(environment) = &self.environment {
             let ((width, height), turned) = (environment.picture.size(), environment.rotation);
@@ -84,22 +96,50 @@ impl Scene {
         }
 
         writeln!(out, "\nmaterials  {}", self.materials.len())?;
-        let width = self.materials.iter().map(|m| m.name.chars().count()).max().unwrap_or(0).clamp(4, 32);
+        let width = self
+            .materials
+            .iter()
+            .map(|m| m.name.chars().count())
+            .max()
+            .unwrap_or(0)
+            .clamp(4, 32);
         if !self.materials.is_empty() {
-            writeln!(out, "  {:width$}  base color         rough metal  notes", "name")?;
+            writeln!(
+                out,
+                "  {:width$}  base color         rough metal  notes",
+                "name"
+            )?;
         }
         for material in &self.materials {
             let [r, g, b, _] = material.base_color.to_array();
-            let Material { name, roughness, metallic, .. } = material;
+            let Material {
+                name,
+                roughness,
+                metallic,
+                ..
+            } = material;
             let notes = notes(material);
-            writeln!(out, "  {name:width$}  {r:.3} {g:.3} {b:.3}  {roughness:.2}  {metallic:.2}  {notes}")?;
+            writeln!(
+                out,
+                "  {name:width$}  {r:.3} {g:.3} {b:.3}  {roughness:.2}  {metallic:.2}  {notes}"
+            )?;
         }
         let bytes = |texture: &Texture| texture.mips.iter().map(Vec::len).sum::<usize>();
         let total = self.textures.iter().map(bytes).sum::<usize>() as f64 / f64::from(1 << 20);
         writeln!(out, "\ntextures   {} ({total:.1} MiB)", self.textures.len())?;
         for texture in &self.textures {
-            let Texture { name, width, height, format, mips } = texture;
-            writeln!(out, "  {name}  {width}x{height} {format:?}, {} mips", mips.len())?;
+            let Texture {
+                name,
+                width,
+                height,
+                format,
+                mips,
+            } = texture;
+            writeln!(
+                out,
+                "  {name}  {width}x{height} {format:?}, {} mips",
+                mips.len()
+            )?;
         }
         let lights = self.all_lights();
         writeln!(out, "\nlights     {}", lights.len())?;
@@ -121,7 +161,11 @@ impl Scene {
         }
         writeln!(out, "\ncameras    {}", self.cameras.len())?;
         for (name, camera) in &self.cameras {
-            writeln!(out, "  {name}  eye {:.2} toward {:.2}, {} deg", camera.eye, camera.target, camera.fov_y)?;
+            writeln!(
+                out,
+                "  {name}  eye {:.2} toward {:.2}, {} deg",
+                camera.eye, camera.target, camera.fov_y
+            )?;
         }
         if !self.warnings.is_empty() {
             writeln!(out, "\nwarnings   {}", self.warnings.len())?;

@@ -14,16 +14,35 @@ impl Scene {
     /// Triangles over all instances (a mesh placed twice counts twice).
     pub fn triangle_count(&self) -> usize {
         let of_mesh = |i: u32| self.meshes.get(i as usize).map_or(0, Mesh::triangle_count);
-        self.instances.iter().map(|instance| of_mesh(instance.mesh)).sum()
+        self.instances
+            .iter()
+            .map(|instance| of_mesh(instance.mesh))
+            .sum()
     }
 
     /// How many of them emit light.
     pub fn emitting_triangle_count(&self) -> usize {
-        let emits = |m: u32| self.materials.get(m as usize).is_some_and(|m| m.emission != Vec3::ZERO);
-        let submeshes = |i: u32| self.meshes.get(i as usize).into_iter().flat_map(|mesh| &mesh.submeshes);
-        let of_mesh =
-            |i: u32| submeshes(i).filter(|s| emits(s.material)).map(|s| s.index_count as usize / 3).sum::<usize>();
-        self.instances.iter().map(|instance| of_mesh(instance.mesh)).sum()
+        let emits = |m: u32| {
+            self.materials
+                .get(m as usize)
+                .is_some_and(|m| m.emission != Vec3::ZERO)
+        };
+        let submeshes = |i: u32| {
+            self.meshes
+                .get(i as usize)
+                .into_iter()
+                .flat_map(|mesh| &mesh.submeshes)
+        };
+        let of_mesh = |i: u32| {
+            submeshes(i)
+                .filter(|s| emits(s.material))
+                .map(|s| s.index_count as usize / 3)
+                .sum::<usize>()
+        };
+        self.instances
+            .iter()
+            .map(|instance| of_mesh(instance.mesh))
+            .sum()
     }
 }
 
@@ -40,6 +59,9 @@ pub(crate) fn origin_of((low, high): (Vec3, Vec3)) -> Vec3 {
 impl Mesh {
     /// Triangles of the mesh itself.
     pub fn triangle_count(&self) -> usize {
-        self.submeshes.iter().map(|submesh| submesh.index_count as usize / 3).sum()
+        self.submeshes
+            .iter()
+            .map(|submesh| submesh.index_count as usize / 3)
+            .sum()
     }
 }

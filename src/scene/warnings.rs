@@ -27,7 +27,11 @@ impl Warnings {
         let kind = match self.kinds.iter_mut().position(|k| k.what == what) {
             Some(known) => &mut self.kinds[known],
             None => {
-                self.kinds.push(Kind { what, names: Vec::new(), count: 0 });
+                self.kinds.push(Kind {
+                    what,
+                    names: Vec::new(),
+                    count: 0,
+                });
                 let last = self.kinds.len() - 1;
                 &mut self.kinds[last]
             }
@@ -40,7 +44,10 @@ impl Warnings {
 
     /// A line a kind, in the order in which kinds came, each behind the file's name.
     pub fn lines(&self, file: impl Display) -> Vec<String> {
-        self.kinds.iter().map(|kind| format!("{file}: {kind}")).collect()
+        self.kinds
+            .iter()
+            .map(|kind| format!("{file}: {kind}"))
+            .collect()
     }
 }
 

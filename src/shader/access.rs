@@ -14,10 +14,26 @@ pub struct Access {
     pub size: bool,
 }
 
-const READ: Access = Access { read: true, write: false, size: false };
-const WRITE: Access = Access { read: false, write: true, size: false };
-const BOTH: Access = Access { read: true, write: true, size: false };
-const SIZE: Access = Access { read: false, write: false, size: true };
+const READ: Access = Access {
+    read: true,
+    write: false,
+    size: false,
+};
+const WRITE: Access = Access {
+    read: false,
+    write: true,
+    size: false,
+};
+const BOTH: Access = Access {
+    read: true,
+    write: true,
+    size: false,
+};
+const SIZE: Access = Access {
+    read: false,
+    write: false,
+    size: true,
+};
 
 const FUNCTION_CALL: u32 = 57;
 pub(super) const LOAD: u32 = 61;
@@ -33,8 +49,29 @@ const NON_READABLE: u32 = 25;
 /// Instructions that name what there is and use none of it: OpName, OpMemberName, OpEntryPoint, OpDecorate, OpMemberDecorate,
 /// those that hold numbers or text, and those that take values with numbers, which a block is not (OpExtInst, OpVectorShuffle,
 /// OpCompositeExtract, OpCompositeInsert).
-const NAMES_ONLY: [u32; 21] =
-    [3, 4, 5, 6, 7, 8, 10, 11, 12, 14, 15, 16, 17, 21, 22, 43, DECORATE, MEMBER_DECORATE, 79, 81, 82];
+const NAMES_ONLY: [u32; 21] = [
+    3,
+    4,
+    5,
+    6,
+    7,
+    8,
+    10,
+    11,
+    12,
+    14,
+    15,
+    16,
+    17,
+    21,
+    22,
+    43,
+    DECORATE,
+    MEMBER_DECORATE,
+    79,
+    81,
+    82,
+];
 
 /// A storage buffer, image or sampler of a module.
 struct Variable {
@@ -47,13 +84,24 @@ struct Variable {
 pub(super) fn accesses(words: &[u32]) -> BTreeMap<u32, Access> {
     let variables = variables(words);
     let origins = origins(words, variables.keys().copied());
-    let mut found: BTreeMap<u32, Access> = variables.values().map(|v| (v.binding, Access::default())).collect();
+    let mut found: BTreeMap<u32, Access> = variables
+        .values()
+        .map(|v| (v.binding, Access::default()))
+        .collect();
     for i in instructions(words) {
         for (id, access) in touched(i) {
             let origin = origins.get(&id);
             // A store that goes to one of several images cannot be taken out for one of them: no mere write.
-            let access = if origin.is_some_and(|o| o.len() > 1) && access == WRITE { BOTH } else { access };
-            for variable in origin.into_iter().flatten().filter_map(|v| variables.get(v)) {
+            let access = if origin.is_some_and(|o| o.len() > 1) && access == WRITE {
+                BOTH
+            } else {
+                access
+            };
+            for variable in origin
+                .into_iter()
+                .flatten()
+                .filter_map(|v| variables.get(v))
+            {
                 // Loading an image gives a handle; it counts where that is used.
                 if (variable.buffer || opcode(i) != LOAD)
                     && let Some(known) = found.get_mut(&variable.binding)
@@ -73,13 +121,21 @@ pub(super) fn accesses(words: &[u32]) -> BTreeMap<u32, Access> {
 pub(super) fn decorated(words: &[u32]) -> Vec<u32> {
     let (accesses, images) = (accesses(words), storage_images(words));
     let is_decoration = |i: &[u32]| [DECORATE, MEMBER_DECORATE].contains(&opcode(i));
-    let there: BTreeSet<&[u32]> =
-        instructions(words).filter(|i| opcode(i) == DECORATE).filter_map(|i| i.get(1..3)).collect();
+    let there: BTreeSet<&[u32]> = instructions(words)
+        .filter(|i| opcode(i) == DECORATE)
+        .filter_map(|i| i.get(1..3))
+        .collect();
     let mut added = Vec::new();
     // Samplers are never written and take no such decoration.
-    for (id, variable) in variables(words).into_iter().filter(|(id, v)| v.buffer || images.contains(id)) {
+    for (id, variable) in variables(words)
+        .into_iter()
+        .filter(|(id, v)| v.buffer || images.contains(id))
+    {
         let access = accesses.get(&variable.binding).copied().unwrap_or(BOTH);
-        for (decoration, holds) in [(NON_WRITABLE, !access.write), (NON_READABLE, access.write && !access.read)] {
+        for (decoration, holds) in [
+            (NON_WRITABLE, !access.write),
+            (NON_READABLE, access.write && !access.read),
+        ] {
             if holds && !there.contains([id, decoration].as_slice()) {
                 added.extend([3 << 16 | DECORATE, id, decoration]);
             }
@@ -103,16 +159,24 @@ pub(super) fn decorated(words: &[u32]) -> Vec<u32> {
 fn variables(words: &[u32]) -> BTreeMap<u32, Variable> {
     let classes: BTreeMap<u32, bool> = instructions(words)
         .filter_map(|i| match i {
-            [_, _, id, class @ (UNIFORM_CONSTANT | STORAGE_BUFFER), ..] if opcode(i) == VARIABLE => {
+            [_, _, id, class @ (UNIFORM_CONSTANT | STORAGE_BUFFER), ..]
+                if opcode(i) == VARIABLE =>
+            {
                 Some((*id, *class == STORAGE_BUFFER))
             }
             _ => None,
         })
         .collect();
     let bound = instructions(words).filter_map(|i| match i {
-        [_, id, BINDING, binding] if opcode(i) == DECORATE => {
-            classes.get(id).map(|buffer| (*id, Variable { binding: *binding, buffer: *buffer }))
-        }
+        [_, id, BINDING, binding] if opcode(i) == DECORATE => classes.get(id).map(|buffer| {
+            (
+                *id,
+                Variable {
+                    binding: *binding,
+                    buffer: *buffer,
+                },
+            )
+        }),
         _ => None,
     });
     bound.collect()
@@ -139,9 +203,18 @@ pub(super) fn uniform_members(words: &[u32]) -> BTreeMap<u32, Option<BTreeSet<u3
         blocks.iter().map(|b| (*b, Some(BTreeSet::new()))).collect();
     for i in instructions(words) {
         let said = NAMES_ONLY.contains(&opcode(i)) || opcode(i) == VARIABLE;
-        for (at, block) in i.iter().enumerate().skip(1).filter(|(_, id)| !said && blocks.contains(id)) {
+        for (at, block) in i
+            .iter()
+            .enumerate()
+            .skip(1)
+            .filter(|(_, id)| !said && blocks.contains(id))
+        {
             let chain = (opcode(i) == 65 || opcode(i) == 66) && at == 3;
-            let member = if chain { i.get(4).and_then(|index| constants.get(index)) } else { None };
+            let member = if chain {
+                i.get(4).and_then(|index| constants.get(index))
+            } else {
+                None
+            };
             match (members.get_mut(block), member) {
                 (Some(Some(list)), Some(member)) => drop(list.insert(*member)),
                 // Anything else, be it a number that only looks like the block's: it may be all.
@@ -151,7 +224,9 @@ pub(super) fn uniform_members(words: &[u32]) -> BTreeMap<u32, Option<BTreeSet<u3
         }
     }
     let binding = |i: &[u32]| match i {
-        [_, id, BINDING, binding] if opcode(i) == DECORATE => Some((*binding, members.get(id)?.clone())),
+        [_, id, BINDING, binding] if opcode(i) == DECORATE => {
+            Some((*binding, members.get(id)?.clone()))
+        }
         _ => None,
     };
     instructions(words).filter_map(binding).collect()
@@ -165,7 +240,9 @@ pub(super) fn stored_by_each(words: &[u32]) -> BTreeSet<u32> {
     const BUILT_IN: u32 = 11;
     const GLOBAL_INVOCATION_ID: u32 = 28;
     const FUNCTION: u32 = 54;
-    let entry = instructions(words).find(|i| opcode(i) == ENTRY_POINT).and_then(|i| i.get(2));
+    let entry = instructions(words)
+        .find(|i| opcode(i) == ENTRY_POINT)
+        .and_then(|i| i.get(2));
     let main = instructions(words).skip_while(|i| opcode(i) != FUNCTION || i.get(2) != entry);
     // To its first branch, return or kill.
     let first_block = main.take_while(|i| !(249..=255).contains(&opcode(i)));
@@ -178,7 +255,9 @@ pub(super) fn stored_by_each(words: &[u32]) -> BTreeSet<u32> {
     for i in first_block {
         match (opcode(i), i) {
             (LOAD, [_, _, id, from, ..]) if places.contains(from) => drop(places.insert(*id)),
-            (LOAD, [_, _, id, from, ..]) => drop(variables.get(from).map(|v| images.insert(*id, v.binding))),
+            (LOAD, [_, _, id, from, ..]) => {
+                drop(variables.get(from).map(|v| images.insert(*id, v.binding)))
+            }
             // OpBitcast; OpVectorShuffle of the first two.
             (124, [_, _, id, from]) if places.contains(from) => drop(places.insert(*id)),
             (79, [_, _, id, a, _, 0, 1]) if places.contains(a) => drop(places.insert(*id)),
@@ -192,7 +271,9 @@ pub(super) fn stored_by_each(words: &[u32]) -> BTreeSet<u32> {
 /// The storage images with these binding numbers.
 pub(super) fn images_at(words: &[u32], bindings: &[u32]) -> BTreeSet<u32> {
     let images = storage_images(words);
-    let bound = variables(words).into_iter().filter(|(id, v)| images.contains(id) && bindings.contains(&v.binding));
+    let bound = variables(words)
+        .into_iter()
+        .filter(|(id, v)| images.contains(id) && bindings.contains(&v.binding));
     bound.map(|(id, _)| id).collect()
 }
 
@@ -205,7 +286,9 @@ fn storage_images(words: &[u32]) -> BTreeSet<u32> {
     for i in instructions(words) {
         match (opcode(i), i) {
             (TYPE_IMAGE, [_, id, ..]) => drop(types.insert(*id)),
-            (TYPE_POINTER, [_, id, _, pointee]) if types.contains(pointee) => drop(types.insert(*id)),
+            (TYPE_POINTER, [_, id, _, pointee]) if types.contains(pointee) => {
+                drop(types.insert(*id))
+            }
             (VARIABLE, [_, ty, id, ..]) if types.contains(ty) => drop(images.insert(*id)),
             _ => {}
         }
@@ -261,9 +344,13 @@ fn follow(words: &[u32], parameters: &BTreeMap<u32, Vec<u32>>, origins: &mut Ori
             (60 | LOAD | 65..=67 | 70 | 83, [_, _, id, base, ..]) => join(*id, &[*base]),
             // OpSelect, OpPhi.
             (169, [_, _, id, _, a, b]) => join(*id, &[*a, *b]),
-            (245, [_, _, id, rest @ ..]) => join(*id, &rest.iter().step_by(2).copied().collect::<Vec<_>>()),
+            (245, [_, _, id, rest @ ..]) => {
+                join(*id, &rest.iter().step_by(2).copied().collect::<Vec<_>>())
+            }
             (FUNCTION_CALL, [_, _, _, callee, arguments @ ..]) => {
-                for (parameter, argument) in parameters.get(callee).into_iter().flatten().zip(arguments) {
+                for (parameter, argument) in
+                    parameters.get(callee).into_iter().flatten().zip(arguments)
+                {
                     join(*parameter, &[*argument]);
                 }
             }
@@ -288,7 +375,9 @@ fn touched(i: &[u32]) -> Vec<(u32, Access)> {
         // OpImageQuerySizeLod, OpImageQuerySize, other queries.
         (103..=107, [_, _, _, image, ..]) => vec![(*image, SIZE)],
         // A function that was not inlined needs its argument, whatever it does to it.
-        (FUNCTION_CALL, [_, _, _, _, arguments @ ..]) => arguments.iter().map(|id| (*id, SIZE)).collect(),
+        (FUNCTION_CALL, [_, _, _, _, arguments @ ..]) => {
+            arguments.iter().map(|id| (*id, SIZE)).collect()
+        }
         // Atomics that change a value and give the old one: integers, flags, float minimum, maximum and sum.
         (229..=242 | 318 | 5614 | 5615 | 6035, [_, _, _, pointer, ..]) => vec![(*pointer, BOTH)],
         // OpAtomicFlagClear.

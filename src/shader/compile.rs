@@ -38,7 +38,8 @@ pub struct Compiled {
 }
 
 /// Kept: with the last one go the tables of built-in functions, and making them takes a hundred times a compile.
-static COMPILER: LazyLock<Result<shaderc::Compiler, shaderc::Error>> = LazyLock::new(shaderc::Compiler::new);
+static COMPILER: LazyLock<Result<shaderc::Compiler, shaderc::Error>> =
+    LazyLock::new(shaderc::Compiler::new);
 
 /// The last module of each file (folder, name), in this program: an edit compiles and reads only what it touches.
 static LAST: Mutex<BTreeMap<(PathBuf, String), Compiled>> = Mutex::new(BTreeMap::new());
@@ -54,12 +55,16 @@ pub fn module_include(name: &str) -> String {
 
 /// Path of a shader or include in a folder of shaders.
 pub fn find(folder: &Path, name: &str) -> Option<PathBuf> {
-    is_inside(name).then(|| folder.join(name)).filter(|path| path.is_file())
+    is_inside(name)
+        .then(|| folder.join(name))
+        .filter(|path| path.is_file())
 }
 
 /// Whether a name stays inside its folder. Names come from the text of graphs and shaders.
 pub(crate) fn is_inside(name: &str) -> bool {
-    Path::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_)))
+    Path::new(name)
+        .components()
+        .all(|c| matches!(c, std::path::Component::Normal(_)))
 }
 
 /// Compiles shaders of one folder, as its files were when it first read each.
@@ -78,7 +83,11 @@ struct Text(String, Vec<String>);
 
 impl Text {
     fn new(text: String) -> Arc<Text> {
-        let includes = text.lines().filter_map(included).map(String::from).collect();
+        let includes = text
+            .lines()
+            .filter_map(included)
+            .map(String::from)
+            .collect();
         Arc::new(Text(text, includes))
     }
 }
@@ -98,22 +107,36 @@ const MAX_DEPTH: usize = 32;
 impl ShaderCompiler {
     /// A compiler for `folder`, with compiled modules kept in `cache`.
     pub fn new(folder: &Path, cache: Option<&Path>) -> ShaderCompiler {
-        ShaderCompiler { folder: folder.to_path_buf(), cache: cache.map(Path::to_path_buf), read: Mutex::default() }
+        ShaderCompiler {
+            folder: folder.to_path_buf(),
+            cache: cache.map(Path::to_path_buf),
+            read: Mutex::default(),
+        }
     }
 
     /// Compiles one file.
     ///
     /// # Errors
     /// Every message of the compiler, with the original file and line.
-    pub fn compile(&self, source: &Source, generated: &Generated) -> Result<Compiled, Vec<Diagnostic>> {
+    pub fn compile(
+        &self,
+        source: &Source,
+        generated: &Generated,
+    ) -> Result<Compiled, Vec<Diagnostic>> {
         let texts = self.texts(&source.file, generated)?;
         let name = (self.folder.clone(), source.file.clone());
         let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = last().get(&name).filter(|k| k.stage == source.stage && *k.texts == texts) {
+        if let Some(known) = last()
+            .get(&name)
+            .filter(|k| k.stage == source.stage && *k.texts == texts)
+        {
             return Ok(known.clone());
         }
         let key = self.key(source, &texts);
-        let cached = self.cache.as_ref().map(|dir| dir.join(format!("{key}.spv")));
+        let cached = self
+            .cache
+            .as_ref()
+            .map(|dir| dir.join(format!("{key}.spv")));
         // A module in the cache that cannot be read is compiled again.
         let from_cache = cached.as_deref().and_then(crate::files::read_checked);
         let from_cache = from_cache.and_then(|bytes| read_module(&bytes, source.stage));
@@ -127,7 +150,10 @@ impl ShaderCompiler {
                     let _ = crate::files::write_checked(path, &bytes);
                 }
                 let interface = reflect(&words, source.stage).map_err(|message| {
-                    let place = Place { file: self.folder.join(&source.file), ..Place::default() };
+                    let place = Place {
+                        file: self.folder.join(&source.file),
+                        ..Place::default()
+                    };
                     vec![Diagnostic::error(place, message)]
                 })?;
                 (words, interface)
@@ -148,7 +174,11 @@ impl ShaderCompiler {
     ///
     /// # Errors
     /// Files that cannot be read.
-    pub fn texts(&self, file: &str, generated: &Generated) -> Result<BTreeMap<String, String>, Vec<Diagnostic>> {
+    pub fn texts(
+        &self,
+        file: &str,
+        generated: &Generated,
+    ) -> Result<BTreeMap<String, String>, Vec<Diagnostic>> {
         let mut texts = BTreeMap::new();
         self.collect(file, generated, &mut texts)?;
         Ok(texts)
@@ -199,8 +229,14 @@ impl ShaderCompiler {
         if is_inside(name) {
             return text_of(&self.folder.join(name));
         }
-        let place = Place { file: self.folder.clone(), ..Place::default() };
-        Err(vec![Diagnostic::error(place, format!("the shader '{name}' leads out of this folder"))])
+        let place = Place {
+            file: self.folder.clone(),
+            ..Place::default()
+        };
+        Err(vec![Diagnostic::error(
+            place,
+            format!("the shader '{name}' leads out of this folder"),
+        )])
     }
 
     fn key(&self, source: &Source, texts: &BTreeMap<String, String>) -> String {
@@ -219,13 +255,28 @@ impl ShaderCompiler {
         crate::files::hex(&hash.finalize()[..16])
     }
 
-    fn run(&self, source: &Source, texts: &BTreeMap<String, String>) -> Result<Vec<u32>, Vec<Diagnostic>> {
+    fn run(
+        &self,
+        source: &Source,
+        texts: &BTreeMap<String, String>,
+    ) -> Result<Vec<u32>, Vec<Diagnostic>> {
         let broken = |message: String| {
-            vec![Diagnostic::error(Place { file: self.folder.join(&source.file), ..Place::default() }, message)]
+            vec![Diagnostic::error(
+                Place {
+                    file: self.folder.join(&source.file),
+                    ..Place::default()
+                },
+                message,
+            )]
         };
-        let compiler = COMPILER.as_ref().map_err(|e| broken(format!("the compiler did not start: {e}")))?;
+        let compiler = COMPILER
+            .as_ref()
+            .map_err(|e| broken(format!("the compiler did not start: {e}")))?;
         let mut options = shaderc::CompileOptions::new().map_err(|e| broken(e.to_string()))?;
-        options.set_target_env(shaderc::TargetEnv::Vulkan, shaderc::EnvVersion::Vulkan1_3 as u32);
+        options.set_target_env(
+            shaderc::TargetEnv::Vulkan,
+            shaderc::EnvVersion::Vulkan1_3 as u32,
+        );
         options.set_optimization_level(shaderc::OptimizationLevel::Performance);
         // Keeps the names that resources are bound by.
         options.set_generate_debug_info();
@@ -257,12 +308,15 @@ impl ShaderCompiler {
             count.set(count.get() + 1);
             if depth > MAX_DEPTH || count.get() > MAX_INCLUDES {
                 let names = crate::diagnostics::excerpt::chain(&chain);
-                return Err(format!("{TOO_MANY} ({MAX_INCLUDES} at most, {MAX_DEPTH} of them nested): {names}"));
+                return Err(format!(
+                    "{TOO_MANY} ({MAX_INCLUDES} at most, {MAX_DEPTH} of them nested): {names}"
+                ));
             }
             match texts.get(name) {
-                Some(content) => {
-                    Ok(shaderc::ResolvedInclude { resolved_name: name.to_string(), content: content.clone() })
-                }
+                Some(content) => Ok(shaderc::ResolvedInclude {
+                    resolved_name: name.to_string(),
+                    content: content.clone(),
+                }),
                 None => {
                     let hint = nearest(name, self.includes().iter().map(String::as_str));
                     Err(format!("no such include; {}", hint.unwrap_or_default()))
@@ -270,12 +324,27 @@ impl ShaderCompiler {
             }
         });
         let main = texts.get(&source.file).map_or("", String::as_str);
-        let late = check_version(main).map_err(|(line, message)| Grown { file: source.file.clone(), line, message });
+        let late = check_version(main).map_err(|(line, message)| Grown {
+            file: source.file.clone(),
+            line,
+            message,
+        });
         late.and_then(|()| check_growth(texts)).map_err(|grown| {
-            let file = self.find(&grown.file).unwrap_or_else(|| PathBuf::from(format!("{} (generated)", grown.file)));
-            let source = texts.get(&grown.file).and_then(|t| t.lines().nth(grown.line.saturating_sub(1) as usize));
-            let place = Place { file, line: grown.line, column: 0 };
-            vec![Diagnostic { source: source.map(|l| l.trim().into()), ..Diagnostic::error(place, grown.message) }]
+            let file = self
+                .find(&grown.file)
+                .unwrap_or_else(|| PathBuf::from(format!("{} (generated)", grown.file)));
+            let source = texts
+                .get(&grown.file)
+                .and_then(|t| t.lines().nth(grown.line.saturating_sub(1) as usize));
+            let place = Place {
+                file,
+                line: grown.line,
+                column: 0,
+            };
+            vec![Diagnostic {
+                source: source.map(|l| l.trim().into()),
+                ..Diagnostic::error(place, grown.message)
+            }]
         })?;
         match compiler.compile_into_spirv(main, kind, &source.file, "main", Some(&options)) {
             Ok(artifact) => Ok(artifact.as_binary().to_vec()),
@@ -289,11 +358,15 @@ impl ShaderCompiler {
         let mut folders = vec![PathBuf::new()];
         while let Some(folder) = folders.pop() {
             // Folders nested deeper are no one's shaders.
-            let Ok(entries) = std::fs::read_dir(self.folder.join(&folder)) else { continue };
+            let Ok(entries) = std::fs::read_dir(self.folder.join(&folder)) else {
+                continue;
+            };
             for entry in entries.flatten() {
                 let name = folder.join(entry.file_name());
                 match entry.file_type() {
-                    Ok(kind) if kind.is_dir() && folder.components().count() < 4 => folders.push(name),
+                    Ok(kind) if kind.is_dir() && folder.components().count() < 4 => {
+                        folders.push(name)
+                    }
                     Ok(kind) if kind.is_file() => names.push(name.to_string_lossy().into_owned()),
                     _ => {}
                 }
@@ -303,19 +376,39 @@ impl ShaderCompiler {
     }
 
     /// The compiler's text, message by message, with the line each is about.
-    fn messages(&self, text: &str, texts: &BTreeMap<String, String>, main: &str) -> Vec<Diagnostic> {
+    fn messages(
+        &self,
+        text: &str,
+        texts: &BTreeMap<String, String>,
+        main: &str,
+    ) -> Vec<Diagnostic> {
         let mut list: Vec<Diagnostic> = Vec::new();
         for line in text.lines() {
             let mut parts = line.splitn(4, ':');
-            let parsed = match (parts.next(), parts.next().map(str::parse::<u32>), parts.next(), parts.next()) {
-                (Some(file), Some(Ok(number)), Some(level), Some(message)) if texts.contains_key(file) => {
+            let parsed = match (
+                parts.next(),
+                parts.next().map(str::parse::<u32>),
+                parts.next(),
+                parts.next(),
+            ) {
+                (Some(file), Some(Ok(number)), Some(level), Some(message))
+                    if texts.contains_key(file) =>
+                {
                     Some((file, number, level.trim(), message.trim()))
                 }
                 _ => None,
             };
-            let Some((file, number, level, message)) = parsed else { continue };
-            let path = self.find(file).unwrap_or_else(|| PathBuf::from(format!("{file} (generated)")));
-            let place = Place { file: path, line: number, column: 0 };
+            let Some((file, number, level, message)) = parsed else {
+                continue;
+            };
+            let path = self
+                .find(file)
+                .unwrap_or_else(|| PathBuf::from(format!("{file} (generated)")));
+            let place = Place {
+                file: path,
+                line: number,
+                column: 0,
+            };
             // Some print a whole type.
             let told = excerpt(&shortened(message), 400);
             let mut found = match level {
@@ -328,17 +421,26 @@ impl ShaderCompiler {
                 .map(|l| l.trim().to_string());
             if let Some(name) = missing_member(message) {
                 let line = found.source.clone().unwrap_or_default();
-                let members = texts.get("params.glsl").filter(|_| line.contains(&format!("params.{name}")));
-                found = found.nearest(name, members.into_iter().flat_map(|text| params_members(text)));
+                let members = texts
+                    .get("params.glsl")
+                    .filter(|_| line.contains(&format!("params.{name}")));
+                found = found.nearest(
+                    name,
+                    members.into_iter().flat_map(|text| params_members(text)),
+                );
             }
             // Every include up to the first one is told again.
-            let again = message.contains(TOO_MANY) && list.iter().any(|f| f.message.contains(TOO_MANY));
+            let again =
+                message.contains(TOO_MANY) && list.iter().any(|f| f.message.contains(TOO_MANY));
             if !list.contains(&found) && !again {
                 list.push(found);
             }
         }
         if list.is_empty() {
-            let place = Place { file: self.folder.join(main), ..Place::default() };
+            let place = Place {
+                file: self.folder.join(main),
+                ..Place::default()
+            };
             list.push(Diagnostic::error(place, text.trim()));
         }
         list
@@ -348,11 +450,18 @@ impl ShaderCompiler {
 /// The text of a shader file.
 fn text_of(path: &Path) -> Result<Arc<Text>, Vec<Diagnostic>> {
     let fail = |why: String| {
-        let place = Place { file: path.to_path_buf(), ..Place::default() };
+        let place = Place {
+            file: path.to_path_buf(),
+            ..Place::default()
+        };
         vec![Diagnostic::error(place, format!("cannot read it: {why}"))]
     };
     let text = crate::files::read_input_text(path, MAX_BYTES).map_err(|e| fail(e.to_string()))?;
-    if text.contains('\0') { Err(fail("it holds a zero byte".into())) } else { Ok(Text::new(text)) }
+    if text.contains('\0') {
+        Err(fail("it holds a zero byte".into()))
+    } else {
+        Ok(Text::new(text))
+    }
 }
 
 /// The member in the compiler's words that a structure has none of that name.
@@ -363,7 +472,11 @@ fn missing_member(message: &str) -> Option<&str> {
 
 /// Names of the members of the block of parameters in the generated include.
 fn params_members(text: &str) -> impl Iterator<Item = &str> {
-    let block = text.lines().skip_while(|l| !l.contains("uniform Params")).skip(1).take_while(|l| !l.starts_with('}'));
+    let block = text
+        .lines()
+        .skip_while(|l| !l.contains("uniform Params"))
+        .skip(1)
+        .take_while(|l| !l.starts_with('}'));
     block.filter_map(|line| line.trim().strip_suffix(';')?.split_whitespace().nth(1))
 }
 
@@ -389,7 +502,11 @@ fn shortened(message: &str) -> String {
 
 /// The name in an `#include "name"` line.
 fn included(line: &str) -> Option<&str> {
-    let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("include")?;
+    let rest = line
+        .trim_start()
+        .strip_prefix('#')?
+        .trim_start()
+        .strip_prefix("include")?;
     rest.split('"').nth(1)
 }
 
@@ -405,7 +522,10 @@ fn to_words(bytes: &[u8]) -> Option<Vec<u32>> {
     if !bytes.len().is_multiple_of(4) {
         return None;
     }
-    let words: Vec<u32> = bytes.chunks_exact(4).map(|c| u32::from_le_bytes([c[0], c[1], c[2], c[3]])).collect();
+    let words: Vec<u32> = bytes
+        .chunks_exact(4)
+        .map(|c| u32::from_le_bytes([c[0], c[1], c[2], c[3]]))
+        .collect();
     (words.first() == Some(&MAGIC)).then_some(words)
 }
 
@@ -420,12 +540,16 @@ mod tests {
 
     /// The qualifiers of storage buffers and images, by binding number.
     fn qualifiers(words: &[u32]) -> BTreeMap<u32, AccessType> {
-        let entries =
-            ReflectConfig::new().spv(without_constant_operations(words)).ref_all_rscs(true).reflect().unwrap();
+        let entries = ReflectConfig::new()
+            .spv(without_constant_operations(words))
+            .ref_all_rscs(true)
+            .reflect()
+            .unwrap();
         let access = |var: &Variable| match var {
             Variable::Descriptor {
                 desc_bind,
-                desc_ty: DescriptorType::StorageBuffer(access) | DescriptorType::StorageImage(access),
+                desc_ty:
+                    DescriptorType::StorageBuffer(access) | DescriptorType::StorageImage(access),
                 ..
             } => Some((desc_bind.bind(), *access)),
             _ => None,
@@ -436,18 +560,31 @@ mod tests {
     #[test]
     fn instructions_do_what_the_qualifiers_of_every_shader_say() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let folders = Folders { passes: root.join("passes"), shaders: root.join("shaders") };
+        let folders = Folders {
+            passes: root.join("passes"),
+            shaders: root.join("shaders"),
+        };
         let graph = load(&folders.passes.join("rays.ron"), &folders).unwrap();
         let generated = crate::graph::link::generated(&graph, &graph.params);
-        let mut files: Vec<&String> = graph.passes.iter().flat_map(|p| &p.value.shaders.0).map(|s| &s.value).collect();
+        let mut files: Vec<&String> = graph
+            .passes
+            .iter()
+            .flat_map(|p| &p.value.shaders.0)
+            .map(|s| &s.value)
+            .collect();
         files.sort();
         files.dedup();
         let compiler = ShaderCompiler::new(&folders.shaders, None);
         let checked: usize = files
             .par_iter()
             .map(|file| {
-                let source = Source { file: (*file).clone(), stage: Stage::of_file(file).unwrap() };
-                let words = compiler.run(&source, &compiler.texts(file, &generated).unwrap()).unwrap();
+                let source = Source {
+                    file: (*file).clone(),
+                    stage: Stage::of_file(file).unwrap(),
+                };
+                let words = compiler
+                    .run(&source, &compiler.texts(file, &generated).unwrap())
+                    .unwrap();
                 let found = accesses(&words);
                 let qualifiers = qualifiers(&words);
                 for (binding, qualifier) in &qualifiers {
@@ -459,7 +596,11 @@ mod tests {
                         // No qualifier says anything.
                         AccessType::ReadWrite => true,
                     };
-                    assert!(agrees, "{file}: binding {binding}: {qualifier:?}, {:?}", found[binding]);
+                    assert!(
+                        agrees,
+                        "{file}: binding {binding}: {qualifier:?}, {:?}",
+                        found[binding]
+                    );
                 }
                 // What was derived says the same of the module as it goes to the device.
                 assert_eq!(accesses(&decorated(&words)), found);

@@ -73,9 +73,11 @@ impl Layout {
         Some(match ty {
             Type::Scalar(s) => Layout::Scalar(scalar(s)),
             Type::Vector(v) => Layout::Vector(scalar(&v.scalar_ty), v.nscalar),
-            Type::Matrix(m) => {
-                Layout::Matrix { columns: m.nvector, rows: m.vector_ty.nscalar, stride: narrow(m.stride?)? }
-            }
+            Type::Matrix(m) => Layout::Matrix {
+                columns: m.nvector,
+                rows: m.vector_ty.nscalar,
+                stride: narrow(m.stride?)?,
+            },
             Type::Array(a) => Layout::Array {
                 of: Box::new(Layout::of(&a.element_ty)?),
                 count: a.nelement,
@@ -104,13 +106,19 @@ impl Layout {
     }
 
     /// (first byte, end) of members of a block by number, in order; none if it lacks one.
-    pub(super) fn bytes_of(&self, members: &std::collections::BTreeSet<u32>) -> Option<Vec<(u32, u32)>> {
+    pub(super) fn bytes_of(
+        &self,
+        members: &std::collections::BTreeSet<u32>,
+    ) -> Option<Vec<(u32, u32)>> {
         let all = self.members();
         members
             .iter()
             .map(|m| {
                 let member = all.get(*m as usize)?;
-                Some((member.offset, member.offset.checked_add(member.layout.bytes())?))
+                Some((
+                    member.offset,
+                    member.offset.checked_add(member.layout.bytes())?,
+                ))
             })
             .collect()
     }
@@ -120,13 +128,19 @@ impl Layout {
         match self {
             Layout::Scalar(s) => s.bytes(),
             Layout::Vector(s, n) => s.bytes() * n,
-            Layout::Matrix { columns, rows, stride } => {
-                stride.saturating_mul(columns.saturating_sub(1)).saturating_add(4 * rows)
-            }
+            Layout::Matrix {
+                columns,
+                rows,
+                stride,
+            } => stride
+                .saturating_mul(columns.saturating_sub(1))
+                .saturating_add(4 * rows),
             Layout::Array { count, stride, .. } => stride.saturating_mul(count.unwrap_or(0)),
-            Layout::Struct(members) => {
-                members.iter().map(|m| m.offset.saturating_add(m.layout.bytes())).max().unwrap_or(0)
-            }
+            Layout::Struct(members) => members
+                .iter()
+                .map(|m| m.offset.saturating_add(m.layout.bytes()))
+                .max()
+                .unwrap_or(0),
         }
     }
 
@@ -134,7 +148,11 @@ impl Layout {
     pub fn endless(&self) -> Option<(&Member, u32)> {
         let last = self.members().last()?;
         match &last.layout {
-            Layout::Array { count: None, stride, .. } => Some((last, *stride)),
+            Layout::Array {
+                count: None,
+                stride,
+                ..
+            } => Some((last, *stride)),
             _ => None,
         }
     }
@@ -147,17 +165,34 @@ impl Layout {
         let mut at = (0, self.clone());
         let mut walked = String::new();
         for part in path.split('.') {
-            let (name, indices) = part.split_once('[').map_or((part, ""), |(name, rest)| (name, rest));
-            at = step(&at, name).map_err(|known| Missing { of: walked.clone(), name: name.into(), known })?;
+            let (name, indices) = part
+                .split_once('[')
+                .map_or((part, ""), |(name, rest)| (name, rest));
+            at = step(&at, name).map_err(|known| Missing {
+                of: walked.clone(),
+                name: name.into(),
+                known,
+            })?;
             for index in indices.split('[').filter(|i| !i.is_empty()) {
-                let missing = |known: String| Missing { of: walked.clone(), name: part.into(), known: vec![known] };
-                let number: u32 = index.trim_end_matches(']').parse().map_err(|_| missing(format!("{name}[0]")))?;
+                let missing = |known: String| Missing {
+                    of: walked.clone(),
+                    name: part.into(),
+                    known: vec![known],
+                };
+                let number: u32 = index
+                    .trim_end_matches(']')
+                    .parse()
+                    .map_err(|_| missing(format!("{name}[0]")))?;
                 at = match &at.1 {
-                    Layout::Array { of, count, stride } if count.is_none_or(|n| number < n) => {
-                        (at.0.saturating_add(stride.saturating_mul(number)), (**of).clone())
-                    }
+                    Layout::Array { of, count, stride } if count.is_none_or(|n| number < n) => (
+                        at.0.saturating_add(stride.saturating_mul(number)),
+                        (**of).clone(),
+                    ),
                     Layout::Array { count, .. } => {
-                        return Err(missing(format!("{name}[{}]", count.unwrap_or(1).saturating_sub(1))));
+                        return Err(missing(format!(
+                            "{name}[{}]",
+                            count.unwrap_or(1).saturating_sub(1)
+                        )));
                     }
                     _ => return Err(missing(name.into())),
                 };
@@ -209,7 +244,9 @@ impl Layout {
     pub fn has_uints(&self, (offset, found): &(u32, Layout), count: u32) -> bool {
         let words = match found {
             Layout::Scalar(_) => self.scalars(0),
-            _ => Some(found.words(*offset, 16)).filter(|w| w.len() == count as usize).unwrap_or_default(),
+            _ => Some(found.words(*offset, 16))
+                .filter(|w| w.len() == count as usize)
+                .unwrap_or_default(),
         };
         (0..count).all(|i| words.contains(&(offset.saturating_add(4 * i), Scalar::Uint)))
     }
@@ -236,8 +273,14 @@ fn step((offset, layout): &(u32, Layout), name: &str) -> Result<(u32, Layout), V
 fn scalar(ty: &ScalarType) -> Scalar {
     match ty {
         ScalarType::Float { bits: 32, .. } => Scalar::Float,
-        ScalarType::Integer { bits: 32, is_signed: true } => Scalar::Int,
-        ScalarType::Integer { bits: 32, is_signed: false } => Scalar::Uint,
+        ScalarType::Integer {
+            bits: 32,
+            is_signed: true,
+        } => Scalar::Int,
+        ScalarType::Integer {
+            bits: 32,
+            is_signed: false,
+        } => Scalar::Uint,
         ScalarType::Float { bits, .. } | ScalarType::Integer { bits, .. } => Scalar::Other(*bits),
         _ => Scalar::Other(32),
     }
@@ -262,11 +305,17 @@ impl fmt::Display for Layout {
             Layout::Vector(Scalar::Float, n) => write!(f, "vec{n}"),
             Layout::Vector(Scalar::Int, n) => write!(f, "ivec{n}"),
             Layout::Vector(Scalar::Uint, n) => write!(f, "uvec{n}"),
-            Layout::Vector(Scalar::Other(bits), n) => write!(f, "vector of {n} numbers of {bits} bits"),
+            Layout::Vector(Scalar::Other(bits), n) => {
+                write!(f, "vector of {n} numbers of {bits} bits")
+            }
             Layout::Matrix { columns, rows, .. } if columns == rows => write!(f, "mat{columns}"),
             Layout::Matrix { columns, rows, .. } => write!(f, "mat{columns}x{rows}"),
-            Layout::Array { of, count: Some(n), .. } => write!(f, "{of}[{n}]"),
-            Layout::Array { of, count: None, .. } => write!(f, "{of}[]"),
+            Layout::Array {
+                of, count: Some(n), ..
+            } => write!(f, "{of}[{n}]"),
+            Layout::Array {
+                of, count: None, ..
+            } => write!(f, "{of}[]"),
             Layout::Struct(members) => {
                 let names: Vec<&str> = members.iter().map(|m| m.name.as_str()).collect();
                 write!(f, "struct {{ {} }}", names.join(", "))

@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 /// Tokens that the files of one shader may have, macros expanded.
 const MAX_TOKENS: f64 = 4e6;
 /// Why the expansion of a macro that repeats an argument is not bounded.
-const WITHOUT_ARGUMENTS: &str = "a macro that repeats an argument must be followed by its arguments in brackets";
+const WITHOUT_ARGUMENTS: &str =
+    "a macro that repeats an argument must be followed by its arguments in brackets";
 /// How deep macros and their arguments may be nested.
 const MAX_DEPTH: usize = 256;
 
@@ -26,9 +27,15 @@ pub(super) struct Grown {
 /// # Errors
 /// The first line that expands beyond the bound or cannot be bounded.
 pub(super) fn check_growth(texts: &BTreeMap<String, String>) -> Result<(), Grown> {
-    let files: Vec<(&str, Vec<Line>)> = texts.iter().map(|(name, text)| (name.as_str(), lines(text))).collect();
+    let files: Vec<(&str, Vec<Line>)> = texts
+        .iter()
+        .map(|(name, text)| (name.as_str(), lines(text)))
+        .collect();
     let mut macros = Macros::default();
-    let defines = files.iter().flat_map(|(_, lines)| lines).filter(|l| l.directive() == Some("define"));
+    let defines = files
+        .iter()
+        .flat_map(|(_, lines)| lines)
+        .filter(|l| l.directive() == Some("define"));
     let all: Vec<(&str, Definition)> = defines.filter_map(definition).collect();
     for (name, definition) in &all {
         macros.definitions.entry(name).or_default().push(definition);
@@ -38,9 +45,14 @@ pub(super) fn check_growth(texts: &BTreeMap<String, String>) -> Result<(), Grown
         // A call may span several lines, so all lines between two directives are one text.
         for part in lines.chunk_by(|a, b| a.directive().is_none() && b.directive().is_none()) {
             let tokens = match part[0].directive() {
-                Some("define" | "undef" | "ifdef" | "ifndef" | "include" | "extension" | "version") => continue,
+                Some(
+                    "define" | "undef" | "ifdef" | "ifndef" | "include" | "extension" | "version",
+                ) => continue,
                 Some(_) => part[0].without_defined(),
-                None => part.iter().flat_map(|line| line.tokens.iter().copied()).collect(),
+                None => part
+                    .iter()
+                    .flat_map(|line| line.tokens.iter().copied())
+                    .collect(),
             };
             let before = sum;
             let found = macros.top(&tokens).map(|own| sum += own);
@@ -54,12 +66,19 @@ pub(super) fn check_growth(texts: &BTreeMap<String, String>) -> Result<(), Grown
                 up_to > MAX_TOKENS
             });
             let line = beyond.unwrap_or(&part[0]);
-            let name = line.tokens.iter().find(|t| macros.definitions.contains_key(*t));
+            let name = line
+                .tokens
+                .iter()
+                .find(|t| macros.definitions.contains_key(*t));
             let about = name.map_or(String::new(), |name| format!(" with '{name}'"));
-            let message = found
-                .err()
-                .unwrap_or_else(|| format!("macros expand to {sum:.0e} tokens{about}; {MAX_TOKENS:.0e} are allowed"));
-            return Err(Grown { file: (*file).into(), line: line.number, message });
+            let message = found.err().unwrap_or_else(|| {
+                format!("macros expand to {sum:.0e} tokens{about}; {MAX_TOKENS:.0e} are allowed")
+            });
+            return Err(Grown {
+                file: (*file).into(),
+                line: line.number,
+                message,
+            });
         }
     }
     Ok(())
@@ -72,9 +91,24 @@ pub(super) fn check_growth(texts: &BTreeMap<String, String>) -> Result<(), Grown
 /// The line, from 1, and the fault.
 pub(super) fn check_version(text: &str) -> Result<(), (u32, String)> {
     let lines = lines(text);
-    let mut before = lines.iter().take_while(|l| l.directive() != Some("version")).filter(|l| !l.tokens.is_empty());
-    let first = before.next().filter(|_| lines.iter().any(|l| l.tokens.windows(2).any(|t| t == ["#", "version"])));
-    first.map_or(Ok(()), |l| Err((l.number, format!("'{}' is before #version, which must come first", l.tokens[0]))))
+    let mut before = lines
+        .iter()
+        .take_while(|l| l.directive() != Some("version"))
+        .filter(|l| !l.tokens.is_empty());
+    let first = before.next().filter(|_| {
+        lines
+            .iter()
+            .any(|l| l.tokens.windows(2).any(|t| t == ["#", "version"]))
+    });
+    first.map_or(Ok(()), |l| {
+        Err((
+            l.number,
+            format!(
+                "'{}' is before #version, which must come first",
+                l.tokens[0]
+            ),
+        ))
+    })
 }
 
 /// A line with its continuations.
@@ -94,14 +128,23 @@ impl<'t> Line<'t> {
             let before = |n: usize| i.checked_sub(n).map(|i| self.tokens[i]);
             before(1) == Some("defined") || before(1) == Some("(") && before(2) == Some("defined")
         };
-        (0..self.tokens.len()).filter(|i| !asked(*i)).map(|i| self.tokens[i]).collect()
+        (0..self.tokens.len())
+            .filter(|i| !asked(*i))
+            .map(|i| self.tokens[i])
+            .collect()
     }
 }
 
 /// Tokens by line; comments are left out.
 fn lines(text: &str) -> Vec<Line<'_>> {
     let (bytes, mut at, mut number) = (text.as_bytes(), 0, 1);
-    let (mut all, mut line) = (Vec::new(), Line { number: 1, tokens: Vec::new() });
+    let (mut all, mut line) = (
+        Vec::new(),
+        Line {
+            number: 1,
+            tokens: Vec::new(),
+        },
+    );
     let word = |b: &u8| b.is_ascii_alphanumeric() || *b == b'_' || *b >= 128;
     while at < bytes.len() {
         let rest = &bytes[at..];
@@ -109,22 +152,35 @@ fn lines(text: &str) -> Vec<Line<'_>> {
             b'\n' => {
                 number += 1;
                 at += 1;
-                let next = Line { number, tokens: Vec::new() };
+                let next = Line {
+                    number,
+                    tokens: Vec::new(),
+                };
                 all.push(std::mem::replace(&mut line, next));
             }
             b'\\' if rest.starts_with(b"\\\n") || rest.starts_with(b"\\\r\n") => {
                 number += 1;
                 at += if rest[1] == b'\n' { 2 } else { 3 };
             }
-            b'/' if rest.starts_with(b"//") => at += rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len()),
+            b'/' if rest.starts_with(b"//") => {
+                at += rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len())
+            }
             b'/' if rest.starts_with(b"/*") => {
-                let end = rest.windows(2).skip(2).position(|w| w == b"*/").map_or(rest.len(), |i| i + 4);
+                let end = rest
+                    .windows(2)
+                    .skip(2)
+                    .position(|w| w == b"*/")
+                    .map_or(rest.len(), |i| i + 4);
                 number += rest[..end].iter().filter(|b| **b == b'\n').count() as u32;
                 at += end;
             }
             b if b.is_ascii_whitespace() => at += 1,
             b => {
-                let end = if word(&b) { rest.iter().position(|b| !word(b)).unwrap_or(rest.len()) } else { 1 };
+                let end = if word(&b) {
+                    rest.iter().position(|b| !word(b)).unwrap_or(rest.len())
+                } else {
+                    1
+                };
                 line.tokens.push(&text[at..at + end]);
                 at += end;
             }
@@ -143,9 +199,13 @@ struct Definition<'t> {
 }
 
 fn definition<'t>(line: &Line<'t>) -> Option<(&'t str, Definition<'t>)> {
-    let [_, _, name, rest @ ..] = line.tokens.as_slice() else { return None };
+    let [_, _, name, rest @ ..] = line.tokens.as_slice() else {
+        return None;
+    };
     // Only a bracket right behind the name begins parameters.
-    let adjacent = rest.first().is_some_and(|t| *t == "(" && t.as_ptr() == name.as_bytes().as_ptr_range().end);
+    let adjacent = rest
+        .first()
+        .is_some_and(|t| *t == "(" && t.as_ptr() == name.as_bytes().as_ptr_range().end);
     let close = rest.iter().position(|t| *t == ")").filter(|_| adjacent);
     let parameters = close.map(|end| rest[1..end].iter().copied().filter(|t| *t != ",").collect());
     let body = close.map_or(rest, |end| &rest[end + 1..]).to_vec();
@@ -184,7 +244,11 @@ impl<'d> Macros<'d> {
         let form = self.cost(tokens, &[], 0);
         self.open.clear();
         let form = form?;
-        if form.ends_in_repeats() { Err(WITHOUT_ARGUMENTS.into()) } else { Ok(form.own) }
+        if form.ends_in_repeats() {
+            Err(WITHOUT_ARGUMENTS.into())
+        } else {
+            Ok(form.own)
+        }
     }
 
     /// The cost of a macro: for each argument, and for the rest, that of the definition with most.
@@ -194,18 +258,29 @@ impl<'d> Macros<'d> {
         }
         // A macro is not expanded within itself.
         if self.open.last() == Some(&name) {
-            return Ok(Form { own: 1.0, ..Form::default() });
+            return Ok(Form {
+                own: 1.0,
+                ..Form::default()
+            });
         }
         if self.open.contains(&name) {
-            return Err(format!("the macros '{name}' and '{}' name each other", self.open[self.open.len() - 1]));
+            return Err(format!(
+                "the macros '{name}' and '{}' name each other",
+                self.open[self.open.len() - 1]
+            ));
         }
         self.open.push(name);
-        let mut most = Form { own: 1.0, ..Form::default() };
+        let mut most = Form {
+            own: 1.0,
+            ..Form::default()
+        };
         let mut repeats: Vec<f64> = Vec::new();
         for definition in self.definitions.get(name).cloned().unwrap_or_default() {
             let parameters = definition.parameters.as_deref().unwrap_or_default();
             if definition.body.windows(2).any(|w| w == ["#", "#"]) {
-                return Err(format!("the macro '{name}' joins tokens (##); write them out"));
+                return Err(format!(
+                    "the macro '{name}' joins tokens (##); write them out"
+                ));
             }
             let form = self.cost(&definition.body, parameters, depth + 1)?;
             let own = match &definition.parameters {
@@ -216,7 +291,10 @@ impl<'d> Macros<'d> {
             };
             if let Some(own) = own {
                 repeats.resize(repeats.len().max(own.len()), 0.0);
-                repeats.iter_mut().zip(own).for_each(|(most, one)| *most = most.max(*one));
+                repeats
+                    .iter_mut()
+                    .zip(own)
+                    .for_each(|(most, one)| *most = most.max(*one));
                 most.call = Some(repeats.clone());
             }
             // The macro itself is read, even if nothing stands for it.
@@ -228,11 +306,22 @@ impl<'d> Macros<'d> {
     }
 
     /// The cost of tokens in which `parameters` stand for arguments.
-    fn cost(&mut self, tokens: &[&'d str], parameters: &[&'d str], depth: usize) -> Result<Form, String> {
+    fn cost(
+        &mut self,
+        tokens: &[&'d str],
+        parameters: &[&'d str],
+        depth: usize,
+    ) -> Result<Form, String> {
         if depth > MAX_DEPTH {
-            return Err(format!("macros and their arguments are nested more than {MAX_DEPTH} deep"));
+            return Err(format!(
+                "macros and their arguments are nested more than {MAX_DEPTH} deep"
+            ));
         }
-        let mut sum = Form { own: 0.0, repeats: vec![0.0; parameters.len()], call: None };
+        let mut sum = Form {
+            own: 0.0,
+            repeats: vec![0.0; parameters.len()],
+            call: None,
+        };
         let mut at = 0;
         while let Some(token) = tokens.get(at) {
             at += 1;
@@ -247,7 +336,11 @@ impl<'d> Macros<'d> {
             let form = self.form(name, depth)?;
             sum.own = (sum.own + form.own).min(ENDLESS);
             let Some(repeats) = &form.call else { continue };
-            let arguments = if tokens.get(at) == Some(&"(") { arguments(&tokens[at..]) } else { None };
+            let arguments = if tokens.get(at) == Some(&"(") {
+                arguments(&tokens[at..])
+            } else {
+                None
+            };
             let Some((arguments, length)) = arguments else {
                 // Arguments that come from other macros are not seen here.
                 if form.ends_in_repeats() && at < tokens.len() {
@@ -317,10 +410,18 @@ mod tests {
 
     #[test]
     fn only_comments_come_before_the_version() {
-        for text in ["#version 460\nvoid main() {}", "// one\n/* two\n */ #version 460\n", "float version;\n"] {
+        for text in [
+            "#version 460\nvoid main() {}",
+            "// one\n/* two\n */ #version 460\n",
+            "float version;\n",
+        ] {
             assert_eq!(check_version(text), Ok(()), "{text}");
         }
-        for (text, line) in [("x#version 460\n", 1), ("\n;\n#version 460\n", 2), ("\u{feff}#version 460\n", 1)] {
+        for (text, line) in [
+            ("x#version 460\n", 1),
+            ("\n;\n#version 460\n", 2),
+            ("\u{feff}#version 460\n", 1),
+        ] {
             assert_eq!(check_version(text).map_err(|e| e.0), Err(line), "{text:?}");
         }
     }
@@ -328,36 +429,76 @@ mod tests {
     #[test]
     fn macros_that_double_are_refused_where_they_are_used() {
         refused(
-            &chain("#define A0 1.0\n", |i| format!("#define A{i} (A{0}+A{0})\n", i - 1), "float x =\nA39;\n"),
+            &chain(
+                "#define A0 1.0\n",
+                |i| format!("#define A{i} (A{0}+A{0})\n", i - 1),
+                "float x =\nA39;\n",
+            ),
             42,
             "'A39'",
         );
         // Neither does the compiler see them where nothing remains, nor are they harmless there.
-        refused(&chain("#define A0\n", |i| format!("#define A{i} A{0} A{0}\n", i - 1), "A39\n"), 41, "tokens");
         refused(
-            &chain("#define A0 1\n", |i| format!("#define A{i} (A{0}|A{0})\n", i - 1), "#if A39\n#endif\n"),
+            &chain(
+                "#define A0\n",
+                |i| format!("#define A{i} A{0} A{0}\n", i - 1),
+                "A39\n",
+            ),
+            41,
+            "tokens",
+        );
+        refused(
+            &chain(
+                "#define A0 1\n",
+                |i| format!("#define A{i} (A{0}|A{0})\n", i - 1),
+                "#if A39\n#endif\n",
+            ),
             41,
             "A39",
         );
-        let calls = format!("#define D(x) x x\n{}a{};\n", "D(".repeat(40), ")".repeat(40));
+        let calls = format!(
+            "#define D(x) x x\n{}a{};\n",
+            "D(".repeat(40),
+            ")".repeat(40)
+        );
         refused(&calls, 2, "'D'");
-        let lines = format!("#define D(x, \\\n y) x y x\n{}a, b{};\n", "D(\n".repeat(40), ", c)".repeat(40));
+        let lines = format!(
+            "#define D(x, \\\n y) x y x\n{}a, b{};\n",
+            "D(\n".repeat(40),
+            ", c)".repeat(40)
+        );
         refused(&lines, 3, "tokens");
         refused(
-            &chain("#define A0(x) x x\n", |i| format!("#define A{i}(x) A{0}(A{0}(x))\n", i - 1), "A39(1)\n"),
+            &chain(
+                "#define A0(x) x x\n",
+                |i| format!("#define A{i}(x) A{0}(A{0}(x))\n", i - 1),
+                "A39(1)\n",
+            ),
             41,
             "A39",
         );
-        let alias = format!("#define D(x) x x\n#define G D\n{}a{};\n", "G(".repeat(40), ")".repeat(40));
+        let alias = format!(
+            "#define D(x) x x\n#define G D\n{}a{};\n",
+            "G(".repeat(40),
+            ")".repeat(40)
+        );
         refused(&alias, 3, "'G'");
     }
 
     #[test]
     fn what_cannot_be_bounded_is_refused() {
-        refused("#define D(x) x x\n#define X D (\nX X X a ) ) )\n", 3, "arguments");
+        refused(
+            "#define D(x) x x\n#define X D (\nX X X a ) ) )\n",
+            3,
+            "arguments",
+        );
         refused("#define C(a, b) a ## b\nC(a, b)\n", 2, "##");
         refused("#define A B B\n#define B A A\nA\n", 3, "each other");
-        let deep = format!("#define I(x) x\n{}a{};\n", "I(".repeat(300), ")".repeat(300));
+        let deep = format!(
+            "#define I(x) x\n{}a{};\n",
+            "I(".repeat(300),
+            ")".repeat(300)
+        );
         refused(&deep, 2, "256");
     }
 
@@ -372,7 +513,11 @@ mod tests {
             assert_eq!(checked(text), Ok(()), "{text}");
         }
         // An unused macro costs nothing.
-        let unused = chain("#define A0 1.0\n", |i| format!("#define A{i} (A{0}+A{0})\n", i - 1), "float x;\n");
+        let unused = chain(
+            "#define A0 1.0\n",
+            |i| format!("#define A{i} (A{0}+A{0})\n", i - 1),
+            "float x;\n",
+        );
         assert_eq!(checked(&unused), Ok(()));
     }
 }

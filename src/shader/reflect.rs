@@ -130,33 +130,60 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
     };
     for var in &entry.vars {
         match var {
-            Variable::Descriptor { name, desc_bind, desc_ty, ty, nbind } => {
-                let name = name.clone().filter(|n| !n.is_empty()).or_else(|| block_name(ty)).unwrap_or_default();
+            Variable::Descriptor {
+                name,
+                desc_bind,
+                desc_ty,
+                ty,
+                nbind,
+            } => {
+                let name = name
+                    .clone()
+                    .filter(|n| !n.is_empty())
+                    .or_else(|| block_name(ty))
+                    .unwrap_or_default();
                 if *nbind != 1 {
                     return Err(format!(
                         "'{name}' is an array of resources; bind them one by one, with names of their own"
                     ));
                 }
-                if desc_bind.set() != 0 || interface.bindings.iter().any(|b| b.binding == desc_bind.bind()) {
-                    return Err(format!("'{name}' has a set or binding of its own; leave out layout(set, binding)"));
+                if desc_bind.set() != 0
+                    || interface
+                        .bindings
+                        .iter()
+                        .any(|b| b.binding == desc_bind.bind())
+                {
+                    return Err(format!(
+                        "'{name}' has a set or binding of its own; leave out layout(set, binding)"
+                    ));
                 }
                 if interface.bindings.len() >= MAX_BINDINGS {
                     return Err(format!("a shader binds at most {MAX_BINDINGS} resources"));
                 }
                 let access = accesses.get(&desc_bind.bind()).copied().unwrap_or_default();
-                let resource =
-                    resource(desc_ty, ty, access).ok_or(format!("'{name}' is of a kind that graphs cannot bind"))?;
+                let resource = resource(desc_ty, ty, access)
+                    .ok_or(format!("'{name}' is of a kind that graphs cannot bind"))?;
                 let layout = Layout::of(ty).map(Arc::new);
                 let reads = members.get(&desc_bind.bind()).zip(layout.as_ref());
                 let reads = reads.and_then(|(read, layout)| layout.bytes_of(read.as_ref()?));
-                interface.bindings.push(Binding { name, binding: desc_bind.bind(), resource, layout, reads });
+                interface.bindings.push(Binding {
+                    name,
+                    binding: desc_bind.bind(),
+                    resource,
+                    layout,
+                    reads,
+                });
             }
             Variable::PushConstant { ty, .. } if ty.nbyte().is_some_and(|n| n > 4) => {
-                return Err(String::from("the only push constant is pass.index of params.glsl"));
+                return Err(String::from(
+                    "the only push constant is pass.index of params.glsl",
+                ));
             }
             Variable::PushConstant { .. } => interface.push = true,
             Variable::SpecConstant { spec_id, .. } => interface.constants.push(*spec_id),
-            Variable::Output { location, .. } if stage == Stage::Fragment => interface.outputs.push(location.loc()),
+            Variable::Output { location, .. } if stage == Stage::Fragment => {
+                interface.outputs.push(location.loc())
+            }
             _ => {}
         }
     }
@@ -209,7 +236,11 @@ fn block_name(ty: &Type) -> Option<String> {
 }
 
 fn resource(kind: &DescriptorType, ty: &Type, access: Access) -> Option<Resource> {
-    let Access { read, write, size: sized } = access;
+    let Access {
+        read,
+        write,
+        size: sized,
+    } = access;
     match kind {
         DescriptorType::UniformBuffer() => Some(Resource::Uniform),
         DescriptorType::StorageBuffer(_) => Some(Resource::Buffer { read, write }),

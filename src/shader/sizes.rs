@@ -18,9 +18,20 @@ pub struct TooLarge {
 
 impl std::fmt::Display for TooLarge {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let largest = if self.name.is_empty() { String::new() } else { format!(" ('{}' is the largest)", self.name) };
-        let bytes = if self.bytes == u64::MAX { "more".into() } else { self.bytes.to_string() };
-        write!(f, "the variables of the shader take {bytes} bytes{largest}; {MAX_BYTES} are allowed. Use a buffer")
+        let largest = if self.name.is_empty() {
+            String::new()
+        } else {
+            format!(" ('{}' is the largest)", self.name)
+        };
+        let bytes = if self.bytes == u64::MAX {
+            "more".into()
+        } else {
+            self.bytes.to_string()
+        };
+        write!(
+            f,
+            "the variables of the shader take {bytes} bytes{largest}; {MAX_BYTES} are allowed. Use a buffer"
+        )
     }
 }
 
@@ -32,7 +43,23 @@ const VARIABLE: u32 = 59;
 const OWN: [u32; 5] = [1, 3, 4, 6, 7];
 /// Instructions with a result of the type in their first operand: undefined, constants, function, parameter,
 /// call, load, composites, copies, select, phi.
-const VALUES: [u32; 15] = [1, 44, 46, 51, 54, 55, 57, 61, 80, 82, 83, 169, 245, 400, SPEC_CONSTANT_OP];
+const VALUES: [u32; 15] = [
+    1,
+    44,
+    46,
+    51,
+    54,
+    55,
+    57,
+    61,
+    80,
+    82,
+    83,
+    169,
+    245,
+    400,
+    SPEC_CONSTANT_OP,
+];
 
 /// Checks a module. `constants` are the values of specialisation constants by id; others have their defaults.
 ///
@@ -50,12 +77,22 @@ pub fn check_sizes(words: &[u32], constants: &[(u32, u32)]) -> Result<(), TooLar
                 largest = largest.max((bytes, *id));
             }
             (op, [_, ty, id, ..]) if VALUES.contains(&op) && sizes.of(*ty) > MAX_BYTES => {
-                return Err(TooLarge { name: name_of(words, *id), bytes: sizes.of(*ty) });
+                return Err(TooLarge {
+                    name: name_of(words, *id),
+                    bytes: sizes.of(*ty),
+                });
             }
             _ => {}
         }
     }
-    if sum > MAX_BYTES { Err(TooLarge { name: name_of(words, largest.1), bytes: sum }) } else { Ok(()) }
+    if sum > MAX_BYTES {
+        Err(TooLarge {
+            name: name_of(words, largest.1),
+            bytes: sum,
+        })
+    } else {
+        Ok(())
+    }
 }
 
 /// Bytes of types by id, and what pointers point to.
@@ -85,9 +122,12 @@ impl Sizes {
                 (*id, self.of(*of).saturating_mul(count))
             }
             // OpTypeStruct.
-            (30, [_, id, members @ ..]) => {
-                (*id, members.iter().fold(0u64, |sum, member| sum.saturating_add(self.of(*member))))
-            }
+            (30, [_, id, members @ ..]) => (
+                *id,
+                members
+                    .iter()
+                    .fold(0u64, |sum, member| sum.saturating_add(self.of(*member))),
+            ),
             // OpTypePointer.
             (32, [_, id, _, pointee]) => {
                 self.pointee.insert(*id, *pointee);
@@ -111,16 +151,24 @@ fn numbers(words: &[u32], constants: &[(u32, u32)]) -> BTreeMap<u32, u64> {
         .collect();
     let given = |id: &u32| {
         let number = ids.get(id)?;
-        constants.iter().find(|(known, _)| known == number).map(|(_, value)| u64::from(*value))
+        constants
+            .iter()
+            .find(|(known, _)| known == number)
+            .map(|(_, value)| u64::from(*value))
     };
     let mut known = BTreeMap::new();
     for i in instructions(words) {
         let found = match (opcode(i), i) {
             (CONSTANT, [_, _, id, value]) => Some((*id, u64::from(*value))),
-            (SPEC_CONSTANT, [_, _, id, value]) => Some((*id, given(id).unwrap_or(u64::from(*value)))),
+            (SPEC_CONSTANT, [_, _, id, value]) => {
+                Some((*id, given(id).unwrap_or(u64::from(*value))))
+            }
             (SPEC_CONSTANT_OP, [_, _, id, op, operands @ ..]) => {
-                let operands: Option<Vec<u64>> = operands.iter().map(|o| known.get(o).copied()).collect();
-                operands.and_then(|list| computed(*op, &list)).map(|value| (*id, value))
+                let operands: Option<Vec<u64>> =
+                    operands.iter().map(|o| known.get(o).copied()).collect();
+                operands
+                    .and_then(|list| computed(*op, &list))
+                    .map(|value| (*id, value))
             }
             _ => None,
         };
@@ -149,6 +197,10 @@ fn name_of(words: &[u32], id: u32) -> String {
         [_, named, text @ ..] if opcode(i) == 5 && *named == id => Some(text),
         _ => None,
     });
-    let bytes = text.unwrap_or_default().iter().flat_map(|w| w.to_le_bytes()).take_while(|b| *b != 0);
+    let bytes = text
+        .unwrap_or_default()
+        .iter()
+        .flat_map(|w| w.to_le_bytes())
+        .take_while(|b| *b != 0);
     String::from_utf8_lossy(&bytes.collect::<Vec<_>>()).into_owned()
 }

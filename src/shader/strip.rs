@@ -25,7 +25,9 @@ pub fn strip_outputs(words: &[u32], locations: &[u32]) -> Vec<u32> {
     let mut dropped: Vec<u32> = instructions(words)
         .filter_map(|i| match i {
             [_, id, LOCATION, location]
-                if opcode(i) == DECORATE && outputs.contains(id) && locations.contains(location) =>
+                if opcode(i) == DECORATE
+                    && outputs.contains(id)
+                    && locations.contains(location) =>
             {
                 Some(*id)
             }
@@ -53,7 +55,9 @@ pub fn strip_outputs(words: &[u32], locations: &[u32]) -> Vec<u32> {
                 out.extend([*first, private, *id, PRIVATE]);
                 out.extend(rest);
             }
-            [first, ty, id, base, rest @ ..] if ACCESS_CHAINS.contains(&opcode(i)) && dropped.contains(base) => {
+            [first, ty, id, base, rest @ ..]
+                if ACCESS_CHAINS.contains(&opcode(i)) && dropped.contains(base) =>
+            {
                 let private = pointers.iter().find(|p| p.0 == *ty).map_or(*ty, |p| p.2);
                 out.extend([*first, private, *id, *base]);
                 out.extend(rest);
@@ -76,12 +80,16 @@ pub fn strip_images(words: &[u32], bindings: &[u32]) -> Vec<u32> {
     const COPY_OBJECT: u32 = 83;
     const IMAGE_WRITE: u32 = 99;
     let accesses = accesses(words);
-    let unsized_bindings: Vec<u32> =
-        bindings.iter().copied().filter(|b| accesses.get(b).is_some_and(|a| !a.size)).collect();
+    let unsized_bindings: Vec<u32> = bindings
+        .iter()
+        .copied()
+        .filter(|b| accesses.get(b).is_some_and(|a| !a.size))
+        .collect();
     let stored = images_at(words, bindings);
     let gone = images_at(words, &unsized_bindings);
     let origins = origins(words, stored.iter().copied());
-    let comes_from = |id: &u32, of: &BTreeSet<u32>| origins.get(id).is_some_and(|o| o.is_subset(of));
+    let comes_from =
+        |id: &u32, of: &BTreeSet<u32>| origins.get(id).is_some_and(|o| o.is_subset(of));
     let mut out = words[..words.len().min(HEADER)].to_vec();
     for i in instructions(words) {
         match (opcode(i), i) {
@@ -91,9 +99,16 @@ pub fn strip_images(words: &[u32], bindings: &[u32]) -> Vec<u32> {
             (NAME | DECORATE, [_, id, ..]) if comes_from(id, &gone) => {}
             (ENTRY_POINT, [_, model, function, rest @ ..]) => {
                 // The name is a text that ends in a zero byte; the variables follow.
-                let name = rest.iter().position(|w| w.to_le_bytes().contains(&0)).map_or(rest.len(), |n| n + 1);
+                let name = rest
+                    .iter()
+                    .position(|w| w.to_le_bytes().contains(&0))
+                    .map_or(rest.len(), |n| n + 1);
                 let (name, listed) = rest.split_at(name);
-                let listed: Vec<u32> = listed.iter().copied().filter(|id| !gone.contains(id)).collect();
+                let listed: Vec<u32> = listed
+                    .iter()
+                    .copied()
+                    .filter(|id| !gone.contains(id))
+                    .collect();
                 let count = u32::try_from(3 + name.len() + listed.len()).unwrap_or(u32::MAX);
                 out.extend([count << 16 | ENTRY_POINT, *model, *function]);
                 out.extend(name);

@@ -41,7 +41,11 @@ impl FrameSlot {
             last: (vk::CommandPool::null(), vk::CommandBuffer::null()),
             fence: vk::Fence::null(),
             queries: vk::QueryPool::null(),
-            query_count: if gpu.info.timestamp_ns > 0.0 { timestamps } else { 0 },
+            query_count: if gpu.info.timestamp_ns > 0.0 {
+                timestamps
+            } else {
+                0
+            },
             written: 0,
             pending: false,
         };
@@ -50,7 +54,9 @@ impl FrameSlot {
         unsafe {
             let at = || VulkanError::at("create a frame");
             (slot.pool, slot.buffer) = command_buffer(gpu)?;
-            slot.fence = d.create_fence(&vk::FenceCreateInfo::default(), None).map_err(at())?;
+            slot.fence = d
+                .create_fence(&vk::FenceCreateInfo::default(), None)
+                .map_err(at())?;
             if slot.query_count > 0 {
                 let info = vk::QueryPoolCreateInfo::default()
                     .query_type(vk::QueryType::TIMESTAMP)
@@ -74,7 +80,8 @@ impl FrameSlot {
         // SAFETY: the fence was submitted with this slot's commands, and the queries up to `written` are in them.
         unsafe {
             self.gpu.wait_for(self.fence)?;
-            d.reset_fences(&[self.fence]).map_err(VulkanError::at("reset a fence"))?;
+            d.reset_fences(&[self.fence])
+                .map_err(VulkanError::at("reset a fence"))?;
             self.pending = false;
             let mut ticks = vec![0u64; self.written as usize];
             if !ticks.is_empty() {
@@ -126,7 +133,9 @@ impl FrameSlot {
         self.wait()?;
         self.record(self.pool, self.buffer, false, first)?;
         self.written = recording.written;
-        let Some(last) = last else { return self.send(&[self.buffer, recording.buffer], None) };
+        let Some(last) = last else {
+            return self.send(&[self.buffer, recording.buffer], None);
+        };
         if self.last.0 == vk::CommandPool::null() {
             self.last = command_buffer(&self.gpu)?;
         }
@@ -148,9 +157,15 @@ impl FrameSlot {
         // SAFETY: the buffer is the pool's, which is this slot's or a recording's: nothing of theirs is pending when they are
         // recorded.
         unsafe {
-            d.reset_command_pool(pool, vk::CommandPoolResetFlags::empty()).map_err(at())?;
-            d.begin_command_buffer(buffer, &vk::CommandBufferBeginInfo::default()).map_err(at())?;
-            let mut commands = Commands { gpu: &self.gpu, handle: buffer, queries };
+            d.reset_command_pool(pool, vk::CommandPoolResetFlags::empty())
+                .map_err(at())?;
+            d.begin_command_buffer(buffer, &vk::CommandBufferBeginInfo::default())
+                .map_err(at())?;
+            let mut commands = Commands {
+                gpu: &self.gpu,
+                handle: buffer,
+                queries,
+            };
             record(&mut commands);
             let written = commands.queries.map_or(0, |q| q.1).min(self.query_count);
             d.end_command_buffer(buffer).map_err(at())?;
@@ -163,23 +178,36 @@ impl FrameSlot {
         buffers: &[vk::CommandBuffer],
         semaphores: Option<(vk::Semaphore, vk::Semaphore)>,
     ) -> Result<()> {
-        let buffers: Vec<_> =
-            buffers.iter().map(|b| vk::CommandBufferSubmitInfo::default().command_buffer(*b)).collect();
+        let buffers: Vec<_> = buffers
+            .iter()
+            .map(|b| vk::CommandBufferSubmitInfo::default().command_buffer(*b))
+            .collect();
         let all = vk::PipelineStageFlags2::ALL_COMMANDS;
-        let part = |s| [vk::SemaphoreSubmitInfo::default().semaphore(s).stage_mask(all)];
+        let part = |s| {
+            [vk::SemaphoreSubmitInfo::default()
+                .semaphore(s)
+                .stage_mask(all)]
+        };
         let between = semaphores.map(|(wait, signal)| (part(wait), part(signal)));
         let mut submit = vk::SubmitInfo2::default().command_buffer_infos(&buffers);
         if let Some((wait, signal)) = &between {
-            submit = submit.wait_semaphore_infos(wait).signal_semaphore_infos(signal);
+            submit = submit
+                .wait_semaphore_infos(wait)
+                .signal_semaphore_infos(signal);
         }
-        let queue = self.gpu.queue.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let queue = self
+            .gpu
+            .queue
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
         let d = &self.gpu.device;
         // SAFETY: the buffers are recorded and not pending, nor are the slot's queries; the lock keeps the queue to one thread.
         unsafe {
             if self.query_count > 0 {
                 d.reset_query_pool(self.queries, 0, self.query_count);
             }
-            d.queue_submit2(*queue, &[submit], self.fence).map_err(VulkanError::at("submit a frame"))?;
+            d.queue_submit2(*queue, &[submit], self.fence)
+                .map_err(VulkanError::at("submit a frame"))?;
         }
         self.pending = true;
         Ok(())
@@ -201,7 +229,12 @@ impl Recording {
     /// Out of memory.
     pub fn new(slot: &FrameSlot, record: impl FnOnce(&mut Commands<'_>)) -> Result<Recording> {
         let (pool, buffer) = command_buffer(&slot.gpu)?;
-        let mut recording = Recording { gpu: slot.gpu.clone(), pool, buffer, written: 0 };
+        let mut recording = Recording {
+            gpu: slot.gpu.clone(),
+            pool,
+            buffer,
+            written: 0,
+        };
         recording.written = slot.record(pool, buffer, true, record)?;
         Ok(recording)
     }
@@ -224,7 +257,9 @@ fn command_buffer(gpu: &Gpu) -> Result<(vk::CommandPool, vk::CommandBuffer)> {
     // SAFETY: plain creations; the pool is destroyed by who asked for it, or here.
     unsafe {
         let pool = gpu.device.create_command_pool(&info, None).map_err(at())?;
-        let info = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
+        let info = vk::CommandBufferAllocateInfo::default()
+            .command_pool(pool)
+            .command_buffer_count(1);
         match gpu.device.allocate_command_buffers(&info) {
             Ok(buffers) => Ok((pool, buffers[0])),
             Err(code) => {
@@ -256,7 +291,10 @@ impl Drop for FrameSlot {
 
 // SAFETY (all `unsafe` below): the command buffer is in the recording state for as long as a `Commands` exists, and
 // every handle comes from an owner that callers keep alive until the frame has finished.
-#[allow(clippy::undocumented_unsafe_blocks, reason = "one reason for all, above")]
+#[allow(
+    clippy::undocumented_unsafe_blocks,
+    reason = "one reason for all, above"
+)]
 impl Commands<'_> {
     /// Records, submits and waits.
     ///
@@ -273,7 +311,12 @@ impl Commands<'_> {
     pub fn timestamp(&mut self) {
         if let Some((pool, next)) = &mut self.queries {
             unsafe {
-                self.gpu.device.cmd_write_timestamp2(self.handle, vk::PipelineStageFlags2::ALL_COMMANDS, *pool, *next);
+                self.gpu.device.cmd_write_timestamp2(
+                    self.handle,
+                    vk::PipelineStageFlags2::ALL_COMMANDS,
+                    *pool,
+                    *next,
+                );
             }
             *next += 1;
         }
@@ -283,7 +326,11 @@ impl Commands<'_> {
     pub fn begin_label(&mut self, name: &str) {
         if let (Some(names), Ok(text)) = (&self.gpu.names, CString::new(name)) {
             let label = vk::DebugUtilsLabelEXT::default().label_name(&text);
-            unsafe { names.device.cmd_begin_debug_utils_label(self.handle, &label) };
+            unsafe {
+                names
+                    .device
+                    .cmd_begin_debug_utils_label(self.handle, &label)
+            };
         }
     }
 
@@ -300,8 +347,13 @@ impl Commands<'_> {
         memory: Option<vk::MemoryBarrier2<'static>>,
         images: &[(&Image, vk::ImageMemoryBarrier2<'static>)],
     ) {
-        let images: Vec<_> = images.iter().map(|(image, barrier)| barrier.image(image.handle)).collect();
-        let info = vk::DependencyInfo::default().memory_barriers(memory.as_slice()).image_memory_barriers(&images);
+        let images: Vec<_> = images
+            .iter()
+            .map(|(image, barrier)| barrier.image(image.handle))
+            .collect();
+        let info = vk::DependencyInfo::default()
+            .memory_barriers(memory.as_slice())
+            .image_memory_barriers(&images);
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.handle, &info) };
     }
 
@@ -341,7 +393,9 @@ impl Commands<'_> {
                     .src_stage_mask(all)
                     .src_access_mask(write)
                     .dst_stage_mask(all | vk::PipelineStageFlags2::HOST)
-                    .dst_access_mask(vk::AccessFlags2::MEMORY_READ | write | vk::AccessFlags2::HOST_READ),
+                    .dst_access_mask(
+                        vk::AccessFlags2::MEMORY_READ | write | vk::AccessFlags2::HOST_READ,
+                    ),
             ),
             &[],
         );
@@ -367,24 +421,47 @@ impl Commands<'_> {
         unsafe {
             d.cmd_bind_pipeline(self.handle, pipeline.point, pipeline.handle);
             if let Some(set) = set {
-                d.cmd_bind_descriptor_sets(self.handle, pipeline.point, pipeline.layout, 0, &[set.0], &[]);
+                d.cmd_bind_descriptor_sets(
+                    self.handle,
+                    pipeline.point,
+                    pipeline.layout,
+                    0,
+                    &[set.0],
+                    &[],
+                );
             }
         }
     }
 
     /// Push constants for all of the pipeline's stages.
     pub fn push(&mut self, pipeline: &Pipeline, bytes: &[u8]) {
-        unsafe { self.gpu.device.cmd_push_constants(self.handle, pipeline.layout, pipeline.push_stages, 0, bytes) };
+        unsafe {
+            self.gpu.device.cmd_push_constants(
+                self.handle,
+                pipeline.layout,
+                pipeline.push_stages,
+                0,
+                bytes,
+            )
+        };
     }
 
     /// Runs a compute grid.
     pub fn dispatch(&mut self, groups: [u32; 3]) {
-        unsafe { self.gpu.device.cmd_dispatch(self.handle, groups[0], groups[1], groups[2]) };
+        unsafe {
+            self.gpu
+                .device
+                .cmd_dispatch(self.handle, groups[0], groups[1], groups[2])
+        };
     }
 
     /// Runs a compute grid whose size is in a buffer.
     pub fn dispatch_indirect(&mut self, buffer: &Buffer, offset: u64) {
-        unsafe { self.gpu.device.cmd_dispatch_indirect(self.handle, buffer.handle, offset) };
+        unsafe {
+            self.gpu
+                .device
+                .cmd_dispatch_indirect(self.handle, buffer.handle, offset)
+        };
     }
 
     /// Starts rendering to attachments (a `None` colour is not written) over an area.
@@ -394,7 +471,13 @@ impl Commands<'_> {
         color: &[ColorAttachment<'_>],
         depth: Option<(&View, Option<f32>, bool)>,
     ) {
-        let load = |clear: bool| if clear { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
+        let load = |clear: bool| {
+            if clear {
+                vk::AttachmentLoadOp::CLEAR
+            } else {
+                vk::AttachmentLoadOp::LOAD
+            }
+        };
         let colors: Vec<_> = color
             .iter()
             .map(|slot| match slot {
@@ -404,7 +487,11 @@ impl Commands<'_> {
                     .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
                     .load_op(load(clear.is_some()))
                     .store_op(vk::AttachmentStoreOp::STORE)
-                    .clear_value(vk::ClearValue { color: vk::ClearColorValue { float32: clear.unwrap_or_default() } }),
+                    .clear_value(vk::ClearValue {
+                        color: vk::ClearColorValue {
+                            float32: clear.unwrap_or_default(),
+                        },
+                    }),
             })
             .collect();
         let depth_info = depth.map(|(view, clear, write)| {
@@ -416,21 +503,40 @@ impl Commands<'_> {
                     vk::ImageLayout::DEPTH_READ_ONLY_OPTIMAL
                 })
                 .load_op(load(clear.is_some()))
-                .store_op(if write { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE })
+                .store_op(if write {
+                    vk::AttachmentStoreOp::STORE
+                } else {
+                    vk::AttachmentStoreOp::NONE
+                })
                 .clear_value(vk::ClearValue {
-                    depth_stencil: vk::ClearDepthStencilValue { depth: clear.unwrap_or(1.0), stencil: 0 },
+                    depth_stencil: vk::ClearDepthStencilValue {
+                        depth: clear.unwrap_or(1.0),
+                        stencil: 0,
+                    },
                 })
         });
-        let area = vk::Rect2D::default().extent(vk::Extent2D { width: size[0], height: size[1] });
-        let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&colors);
+        let area = vk::Rect2D::default().extent(vk::Extent2D {
+            width: size[0],
+            height: size[1],
+        });
+        let mut info = vk::RenderingInfo::default()
+            .render_area(area)
+            .layer_count(1)
+            .color_attachments(&colors);
         if let Some(depth) = &depth_info {
             info = info.depth_attachment(depth);
         }
-        let viewport =
-            vk::Viewport { width: size[0] as f32, height: size[1] as f32, max_depth: 1.0, ..Default::default() };
+        let viewport = vk::Viewport {
+            width: size[0] as f32,
+            height: size[1] as f32,
+            max_depth: 1.0,
+            ..Default::default()
+        };
         unsafe {
             self.gpu.device.cmd_begin_rendering(self.handle, &info);
-            self.gpu.device.cmd_set_viewport(self.handle, 0, &[viewport]);
+            self.gpu
+                .device
+                .cmd_set_viewport(self.handle, 0, &[viewport]);
             self.gpu.device.cmd_set_scissor(self.handle, 0, &[area]);
         }
     }
@@ -442,75 +548,142 @@ impl Commands<'_> {
 
     /// Draws without vertex buffers.
     pub fn draw(&mut self, vertices: u32, instances: u32) {
-        unsafe { self.gpu.device.cmd_draw(self.handle, vertices, instances, 0, 0) };
+        unsafe {
+            self.gpu
+                .device
+                .cmd_draw(self.handle, vertices, instances, 0, 0)
+        };
     }
 
     /// Draws with counts from a buffer.
     pub fn draw_indirect(&mut self, buffer: &Buffer, offset: u64) {
-        unsafe { self.gpu.device.cmd_draw_indirect(self.handle, buffer.handle, offset, 1, 16) };
+        unsafe {
+            self.gpu
+                .device
+                .cmd_draw_indirect(self.handle, buffer.handle, offset, 1, 16)
+        };
     }
 
     /// Binds 32-bit indices.
     pub fn bind_indices(&mut self, buffer: &Buffer) {
-        unsafe { self.gpu.device.cmd_bind_index_buffer(self.handle, buffer.handle, 0, vk::IndexType::UINT32) };
+        unsafe {
+            self.gpu.device.cmd_bind_index_buffer(
+                self.handle,
+                buffer.handle,
+                0,
+                vk::IndexType::UINT32,
+            )
+        };
     }
 
     /// Draws indexed, (index count, first index, first instance).
     pub fn draw_indexed(&mut self, count: u32, first: u32, instance: u32) {
-        unsafe { self.gpu.device.cmd_draw_indexed(self.handle, count, 1, first, 0, instance) };
+        unsafe {
+            self.gpu
+                .device
+                .cmd_draw_indexed(self.handle, count, 1, first, 0, instance)
+        };
     }
 
     /// Draws `count` indexed draws (20 bytes each) from a buffer.
     pub fn draw_indexed_indirect(&mut self, buffer: &Buffer, offset: u64, count: u32) {
-        unsafe { self.gpu.device.cmd_draw_indexed_indirect(self.handle, buffer.handle, offset, count, 20) };
+        unsafe {
+            self.gpu
+                .device
+                .cmd_draw_indexed_indirect(self.handle, buffer.handle, offset, count, 20)
+        };
     }
 
     /// Writes bytes (a multiple of 4) into a buffer from an offset on; large data goes in pieces of 64 KiB.
     pub fn update(&mut self, buffer: &Buffer, at: u64, bytes: &[u8]) {
         for (offset, part) in (at..).step_by(65536).zip(bytes.chunks(65536)) {
-            unsafe { self.gpu.device.cmd_update_buffer(self.handle, buffer.handle, offset, part) };
+            unsafe {
+                self.gpu
+                    .device
+                    .cmd_update_buffer(self.handle, buffer.handle, offset, part)
+            };
         }
     }
 
     /// Fills a buffer with a 32-bit value.
     pub fn fill(&mut self, buffer: &Buffer, value: u32) {
-        unsafe { self.gpu.device.cmd_fill_buffer(self.handle, buffer.handle, 0, vk::WHOLE_SIZE, value) };
+        unsafe {
+            self.gpu
+                .device
+                .cmd_fill_buffer(self.handle, buffer.handle, 0, vk::WHOLE_SIZE, value)
+        };
     }
 
     /// Clears an image in a layout.
     pub fn clear(&mut self, image: &Image, layout: vk::ImageLayout, value: vk::ClearColorValue) {
         let range = whole(image);
-        unsafe { self.gpu.device.cmd_clear_color_image(self.handle, image.handle, layout, &value, &[range]) };
+        unsafe {
+            self.gpu.device.cmd_clear_color_image(
+                self.handle,
+                image.handle,
+                layout,
+                &value,
+                &[range],
+            )
+        };
     }
 
     /// Clears the depth of a depth image in a layout.
     pub fn clear_depth(&mut self, image: &Image, layout: vk::ImageLayout, depth: f32) {
         let value = vk::ClearDepthStencilValue { depth, stencil: 0 };
         let range = whole(image);
-        unsafe { self.gpu.device.cmd_clear_depth_stencil_image(self.handle, image.handle, layout, &value, &[range]) };
+        unsafe {
+            self.gpu.device.cmd_clear_depth_stencil_image(
+                self.handle,
+                image.handle,
+                layout,
+                &value,
+                &[range],
+            )
+        };
     }
 
     /// Copies a buffer's first bytes.
     pub fn copy_buffer(&mut self, from: &Buffer, to: &Buffer, bytes: u64) {
         let region = [vk::BufferCopy::default().size(bytes)];
-        unsafe { self.gpu.device.cmd_copy_buffer(self.handle, from.handle, to.handle, &region) };
+        unsafe {
+            self.gpu
+                .device
+                .cmd_copy_buffer(self.handle, from.handle, to.handle, &region)
+        };
     }
 
     /// Copies all mips of an image into one of the same size.
-    pub fn copy_image(&mut self, from: &Image, from_layout: vk::ImageLayout, to: &Image, to_layout: vk::ImageLayout) {
+    pub fn copy_image(
+        &mut self,
+        from: &Image,
+        from_layout: vk::ImageLayout,
+        to: &Image,
+        to_layout: vk::ImageLayout,
+    ) {
         let regions: Vec<_> = (0..from.desc.mips.min(to.desc.mips))
             .map(|mip| {
                 let part = layers(from, mip);
                 let [width, height, depth] = from.mip_extent(mip);
-                vk::ImageCopy::default().src_subresource(part).dst_subresource(part).extent(vk::Extent3D {
-                    width,
-                    height,
-                    depth,
-                })
+                vk::ImageCopy::default()
+                    .src_subresource(part)
+                    .dst_subresource(part)
+                    .extent(vk::Extent3D {
+                        width,
+                        height,
+                        depth,
+                    })
             })
             .collect();
         unsafe {
-            self.gpu.device.cmd_copy_image(self.handle, from.handle, from_layout, to.handle, to_layout, &regions);
+            self.gpu.device.cmd_copy_image(
+                self.handle,
+                from.handle,
+                from_layout,
+                to.handle,
+                to_layout,
+                &regions,
+            );
         }
     }
 
@@ -533,18 +706,32 @@ impl Commands<'_> {
                 ..layers(image, mip)
             })
             .image_offset(vk::Offset3D { x, y, z })
-            .image_extent(vk::Extent3D { width, height, depth })];
-        unsafe { self.gpu.device.cmd_copy_image_to_buffer(self.handle, image.handle, layout, to.handle, &region) };
+            .image_extent(vk::Extent3D {
+                width,
+                height,
+                depth,
+            })];
+        unsafe {
+            self.gpu.device.cmd_copy_image_to_buffer(
+                self.handle,
+                image.handle,
+                layout,
+                to.handle,
+                &region,
+            )
+        };
     }
 
     /// Fills an image with new content, and leaves it ready to be sampled by fragment shaders.
     pub(super) fn refill(&mut self, image: &Image, from: &Buffer) {
         let [width, height, depth] = image.mip_extent(0);
-        let region = vk::BufferImageCopy::default().image_subresource(layers(image, 0)).image_extent(vk::Extent3D {
-            width,
-            height,
-            depth,
-        });
+        let region = vk::BufferImageCopy::default()
+            .image_subresource(layers(image, 0))
+            .image_extent(vk::Extent3D {
+                width,
+                height,
+                depth,
+            });
         self.fill_image(image, from, &[region]);
     }
 
@@ -564,11 +751,22 @@ impl Commands<'_> {
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.handle, &info) };
     }
 
-    pub(super) fn fill_image(&mut self, image: &Image, from: &Buffer, regions: &[vk::BufferImageCopy]) {
+    pub(super) fn fill_image(
+        &mut self,
+        image: &Image,
+        from: &Buffer,
+        regions: &[vk::BufferImageCopy],
+    ) {
         let target = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
         self.transition(image, vk::ImageLayout::UNDEFINED, target);
         unsafe {
-            self.gpu.device.cmd_copy_buffer_to_image(self.handle, from.handle, image.handle, target, regions);
+            self.gpu.device.cmd_copy_buffer_to_image(
+                self.handle,
+                from.handle,
+                image.handle,
+                target,
+                regions,
+            );
         }
         self.transition(image, target, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL);
     }

@@ -25,13 +25,19 @@ pub(super) unsafe extern "system" fn on_message(
         let text = if data.is_null() || (*data).p_message.is_null() {
             String::from("(no text)")
         } else {
-            CStr::from_ptr((*data).p_message).to_string_lossy().into_owned()
+            CStr::from_ptr((*data).p_message)
+                .to_string_lossy()
+                .into_owned()
         };
         (text, &*user.cast::<Messages>())
     };
     // The loader itself warns of drivers it cannot open, which is no fault of this program.
     if !text.starts_with("loader") && !text.contains("terminator_CreateInstance") {
-        let level = if severity.contains(vk::DebugUtilsMessageSeverityFlagsEXT::ERROR) { "error" } else { "warning" };
+        let level = if severity.contains(vk::DebugUtilsMessageSeverityFlagsEXT::ERROR) {
+            "error"
+        } else {
+            "warning"
+        };
         // A closed standard error must not unwind through the driver.
         let _ = writeln!(std::io::stderr(), "vulkan validation {level}: {text}");
         if let Ok(mut list) = messages.0.lock() {
@@ -44,7 +50,10 @@ pub(super) unsafe extern "system" fn on_message(
 /// How the messenger is created: warnings and errors, all kinds.
 pub(super) fn messenger_info(messages: &Messages) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
     vk::DebugUtilsMessengerCreateInfoEXT::default()
-        .message_severity(vk::DebugUtilsMessageSeverityFlagsEXT::WARNING | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR)
+        .message_severity(
+            vk::DebugUtilsMessageSeverityFlagsEXT::WARNING
+                | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
+        )
         .message_type(
             vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
                 | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE

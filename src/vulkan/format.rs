@@ -30,8 +30,20 @@ pub struct Format {
     pub channels: Channels,
 }
 
-const fn row(name: &'static str, vk: vk::Format, bytes: u32, count: u32, channels: Channels) -> Format {
-    Format { name, vk, bytes, count, channels }
+const fn row(
+    name: &'static str,
+    vk: vk::Format,
+    bytes: u32,
+    count: u32,
+    channels: Channels,
+) -> Format {
+    Format {
+        name,
+        vk,
+        bytes,
+        count,
+        channels,
+    }
 }
 
 use Channels::{Depth, Float, Int, Uint};
@@ -49,7 +61,13 @@ pub const FORMATS: &[Format] = &[
     row("r32f", vk::Format::R32_SFLOAT, 4, 1, Float),
     row("r8", vk::Format::R8_UNORM, 1, 1, Float),
     row("rg8", vk::Format::R8G8_UNORM, 2, 2, Float),
-    row("r11g11b10f", vk::Format::B10G11R11_UFLOAT_PACK32, 4, 3, Float),
+    row(
+        "r11g11b10f",
+        vk::Format::B10G11R11_UFLOAT_PACK32,
+        4,
+        3,
+        Float,
+    ),
     row("rgb10a2", vk::Format::A2B10G10R10_UNORM_PACK32, 4, 4, Float),
     row("r32ui", vk::Format::R32_UINT, 4, 1, Uint),
     row("rg32ui", vk::Format::R32G32_UINT, 8, 2, Uint),
@@ -80,6 +98,10 @@ impl Format {
 
     /// The part of an image that it addresses.
     pub fn aspect(&self) -> vk::ImageAspectFlags {
-        if self.is_depth() { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR }
+        if self.is_depth() {
+            vk::ImageAspectFlags::DEPTH
+        } else {
+            vk::ImageAspectFlags::COLOR
+        }
     }
 }

@@ -118,7 +118,11 @@ impl DeviceInfo {
     /// Milliseconds between two timestamps, of which the count may have started over once; 0 where the second is the earlier one.
     pub fn ms_between(&self, from: u64, to: u64) -> f64 {
         let ticks = to.wrapping_sub(from) & self.timestamp_mask;
-        if ticks > self.timestamp_mask / 2 { 0.0 } else { ticks as f64 * self.timestamp_ns * 1e-6 }
+        if ticks > self.timestamp_mask / 2 {
+            0.0
+        } else {
+            ticks as f64 * self.timestamp_ns * 1e-6
+        }
     }
 
     /// A device that does not exist, with these features and generous limits: for checks that need no device.
@@ -206,18 +210,32 @@ fn create_instance(
 ) -> Result<(ash::Instance, bool)> {
     // SAFETY: plain enumeration and creation calls with structures that outlive them.
     unsafe {
-        let layers = entry.enumerate_instance_layer_properties().map_err(VulkanError::at("list layers"))?;
-        let has_layer = layers.iter().any(|l| l.layer_name_as_c_str() == Ok(VALIDATION));
+        let layers = entry
+            .enumerate_instance_layer_properties()
+            .map_err(VulkanError::at("list layers"))?;
+        let has_layer = layers
+            .iter()
+            .any(|l| l.layer_name_as_c_str() == Ok(VALIDATION));
         if validation && !has_layer {
             return Err(VulkanError::NoValidation);
         }
-        let extensions =
-            entry.enumerate_instance_extension_properties(None).map_err(VulkanError::at("list extensions"))?;
+        let extensions = entry
+            .enumerate_instance_extension_properties(None)
+            .map_err(VulkanError::at("list extensions"))?;
         let debug_utils = has(&extensions, ext::debug_utils::NAME) || validation;
         // Where all devices are such, the loader hides them unless it is asked.
-        let portability = cfg!(target_os = "macos") && has(&extensions, khr::portability_enumeration::NAME);
-        let layer_names = if validation { vec![VALIDATION.as_ptr()] } else { vec![] };
-        let mut extension_names = if debug_utils { vec![ext::debug_utils::NAME.as_ptr()] } else { vec![] };
+        let portability =
+            cfg!(target_os = "macos") && has(&extensions, khr::portability_enumeration::NAME);
+        let layer_names = if validation {
+            vec![VALIDATION.as_ptr()]
+        } else {
+            vec![]
+        };
+        let mut extension_names = if debug_utils {
+            vec![ext::debug_utils::NAME.as_ptr()]
+        } else {
+            vec![]
+        };
         let mut flags = vk::InstanceCreateFlags::empty();
         if portability {
             extension_names.push(khr::portability_enumeration::NAME.as_ptr());
@@ -228,9 +246,12 @@ fn create_instance(
                 .map_err(VulkanError::at("present to this window"))?;
             extension_names.extend_from_slice(needed);
         }
-        let app = vk::ApplicationInfo::default().application_name(c"conelab").api_version(vk::API_VERSION_1_3);
+        let app = vk::ApplicationInfo::default()
+            .application_name(c"conelab")
+            .api_version(vk::API_VERSION_1_3);
         let enables = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
-        let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enables);
+        let mut features =
+            vk::ValidationFeaturesEXT::default().enabled_validation_features(&enables);
         let mut messenger = messenger_info(messages);
         let mut info = vk::InstanceCreateInfo::default()
             .application_info(&app)
@@ -240,14 +261,18 @@ fn create_instance(
         if validation {
             info = info.push_next(&mut features).push_next(&mut messenger);
         }
-        let instance = entry.create_instance(&info, None).map_err(VulkanError::at("create an instance"))?;
+        let instance = entry
+            .create_instance(&info, None)
+            .map_err(VulkanError::at("create an instance"))?;
         Ok((instance, debug_utils))
     }
 }
 
 /// Whether a list of extensions has this one.
 pub(super) fn has(extensions: &[vk::ExtensionProperties], name: &std::ffi::CStr) -> bool {
-    extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(name))
+    extensions
+        .iter()
+        .any(|e| e.extension_name_as_c_str() == Ok(name))
 }
 
 /// The bits of a timestamp that count (VkQueueFamilyProperties).
@@ -260,14 +285,18 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
     unsafe {
         let mut driver = vk::PhysicalDeviceDriverProperties::default();
         let mut ids = vk::PhysicalDeviceIDProperties::default();
-        let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver).push_next(&mut ids);
+        let mut properties = vk::PhysicalDeviceProperties2::default()
+            .push_next(&mut driver)
+            .push_next(&mut ids);
         instance.get_physical_device_properties2(physical, &mut properties);
         let core = properties.properties;
         let mut have12 = vk::PhysicalDeviceVulkan12Features::default();
         let mut all = vk::PhysicalDeviceFeatures2::default().push_next(&mut have12);
         instance.get_physical_device_features2(physical, &mut all);
         let have = all.features;
-        let extensions = instance.enumerate_device_extension_properties(physical).unwrap_or_default();
+        let extensions = instance
+            .enumerate_device_extension_properties(physical)
+            .unwrap_or_default();
         let memory = instance.get_physical_device_memory_properties(physical);
         let heap = memory
             .memory_heaps_as_slice()
@@ -277,17 +306,28 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
             .max()
             .unwrap_or(0);
         let text = |c: &[std::ffi::c_char]| {
-            let bytes: Vec<u8> = c.iter().take_while(|&&b| b != 0).map(|&b| b.cast_unsigned()).collect();
+            let bytes: Vec<u8> = c
+                .iter()
+                .take_while(|&&b| b != 0)
+                .map(|&b| b.cast_unsigned())
+                .collect();
             String::from_utf8_lossy(&bytes).into_owned()
         };
         let version = core.api_version;
         let families = instance.get_physical_device_queue_family_properties(physical);
-        let family = queue_family(instance, physical).and_then(|f| families.get(f as usize).copied());
+        let family =
+            queue_family(instance, physical).and_then(|f| families.get(f as usize).copied());
         // Timers of fewer bits would wrap within a frame or two.
         let timestamps = family.is_some_and(|f| f.timestamp_valid_bits >= 36);
         DeviceInfo {
             name: text(&core.device_name),
-            driver: format!("{} {}", text(&driver.driver_name), text(&driver.driver_info)).trim().to_string(),
+            driver: format!(
+                "{} {}",
+                text(&driver.driver_name),
+                text(&driver.driver_info)
+            )
+            .trim()
+            .to_string(),
             api: format!(
                 "{}.{}.{}",
                 vk::api_version_major(version),
@@ -302,7 +342,11 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                 _ => "other",
             },
             timestamp_mask: family.map_or(u64::MAX, |f| mask_of(f.timestamp_valid_bits)),
-            timestamp_ns: if timestamps { f64::from(core.limits.timestamp_period) } else { 0.0 },
+            timestamp_ns: if timestamps {
+                f64::from(core.limits.timestamp_period)
+            } else {
+                0.0
+            },
             limits: core.limits,
             heap,
             features: Features {
@@ -315,17 +359,22 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                 depth_clamp: have.depth_clamp == vk::TRUE,
                 bc: have.texture_compression_bc == vk::TRUE,
                 // Software devices filter anisotropically at a cost of seconds a frame.
-                anisotropy: have.sampler_anisotropy == vk::TRUE && core.device_type != vk::PhysicalDeviceType::CPU,
+                anisotropy: have.sampler_anisotropy == vk::TRUE
+                    && core.device_type != vk::PhysicalDeviceType::CPU,
                 write_without_format: have.shader_storage_image_write_without_format == vk::TRUE,
                 multi_draw_indirect: have.multi_draw_indirect == vk::TRUE
                     && have.draw_indirect_first_instance == vk::TRUE,
                 independent_blend: have.independent_blend == vk::TRUE,
                 full_index: have.full_draw_index_uint32 == vk::TRUE,
-                int64_atomics: have.shader_int64 == vk::TRUE && have12.shader_buffer_int64_atomics == vk::TRUE,
+                int64_atomics: have.shader_int64 == vk::TRUE
+                    && have12.shader_buffer_int64_atomics == vk::TRUE,
                 shares_memory: super::share::is_supported(instance, physical, &extensions),
                 portability: has(&extensions, khr::portability_subset::NAME),
             },
-            id: DeviceId { device: ids.device_uuid, driver: ids.driver_uuid },
+            id: DeviceId {
+                device: ids.device_uuid,
+                driver: ids.driver_uuid,
+            },
             cache_key: format!(
                 "{:04x}-{:04x}-{:08x}-{}",
                 core.vendor_id,
@@ -351,7 +400,9 @@ fn refusal(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Option<Str
         if v13.dynamic_rendering == vk::FALSE || v13.synchronization2 == vk::FALSE {
             return Some("no dynamic rendering or synchronization2".into());
         }
-        queue_family(instance, physical).is_none().then(|| "no queue with graphics and compute".into())
+        queue_family(instance, physical)
+            .is_none()
+            .then(|| "no queue with graphics and compute".into())
     }
 }
 
@@ -359,7 +410,10 @@ fn queue_family(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Optio
     let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
     // SAFETY: `physical` comes from this instance.
     let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
-    families.iter().position(|f| f.queue_flags.contains(wanted)).and_then(|i| u32::try_from(i).ok())
+    families
+        .iter()
+        .position(|f| f.queue_flags.contains(wanted))
+        .and_then(|i| u32::try_from(i).ok())
 }
 
 fn physical_devices(instance: &ash::Instance) -> Result<Vec<vk::PhysicalDevice>> {
@@ -372,8 +426,11 @@ pub fn list_devices() -> Result<Vec<(DeviceInfo, Option<String>)>> {
     let entry = load()?;
     let messages = Messages::default();
     let (instance, _) = create_instance(&entry, false, None, &messages)?;
-    let list = physical_devices(&instance)
-        .map(|all| all.into_iter().map(|p| (describe(&instance, p), refusal(&instance, p))).collect());
+    let list = physical_devices(&instance).map(|all| {
+        all.into_iter()
+            .map(|p| (describe(&instance, p), refusal(&instance, p)))
+            .collect()
+    });
     // SAFETY: nothing made from the instance is alive any more.
     unsafe { instance.destroy_instance(None) };
     list
@@ -410,8 +467,14 @@ fn choose(instance: &ash::Instance, wanted: Option<&str>) -> Result<vk::Physical
         .min_by_key(|(number, _, info)| (rank(info), *number))
         .map(|(_, physical, _)| physical)
         .ok_or_else(|| VulkanError::NoDevice {
-            wanted: wanted.map_or(String::from("with graphics and compute"), |w| format!("named '{w}'")),
-            found: if found.is_empty() { "none".into() } else { found.join(", ") },
+            wanted: wanted.map_or(String::from("with graphics and compute"), |w| {
+                format!("named '{w}'")
+            }),
+            found: if found.is_empty() {
+                "none".into()
+            } else {
+                found.join(", ")
+            },
         })
 }
 
@@ -428,16 +491,21 @@ impl Gpu {
     ///
     /// # Errors
     /// As [`Gpu::open`].
-    pub fn open_for(options: &GpuOptions, display: Option<raw_window_handle::RawDisplayHandle>) -> Result<Arc<Gpu>> {
+    pub fn open_for(
+        options: &GpuOptions,
+        display: Option<raw_window_handle::RawDisplayHandle>,
+    ) -> Result<Arc<Gpu>> {
         let _door = door();
         let entry = load()?;
         let messages = Box::new(Messages::default());
-        let (instance, debug_utils) = create_instance(&entry, options.validation, display, &messages)?;
+        let (instance, debug_utils) =
+            create_instance(&entry, options.validation, display, &messages)?;
         let messenger = if options.validation {
             let api = ext::debug_utils::Instance::new(&entry, &instance);
             // SAFETY: the callback's user data is the boxed message list, dropped after the messenger.
-            let handle = unsafe { api.create_debug_utils_messenger(&messenger_info(&messages), None) }
-                .map_err(VulkanError::at("create the debug messenger"))?;
+            let handle =
+                unsafe { api.create_debug_utils_messenger(&messenger_info(&messages), None) }
+                    .map_err(VulkanError::at("create the debug messenger"))?;
             Some((api, handle))
         } else {
             None
@@ -445,7 +513,13 @@ impl Gpu {
         let physical = choose(&instance, options.device.as_deref())?;
         let info = describe(&instance, physical);
         let family = queue_family(&instance, physical).unwrap_or(0);
-        let device = create_device(&instance, physical, family, &info.features, display.is_some())?;
+        let device = create_device(
+            &instance,
+            physical,
+            family,
+            &info.features,
+            display.is_some(),
+        )?;
         // SAFETY: the family and index were used to create the device.
         let queue = unsafe { device.get_device_queue(family, 0) };
         let allocator = Allocator::new(&AllocatorCreateDesc {
@@ -457,15 +531,28 @@ impl Gpu {
             // Small blocks: software devices have one heap of 2 GiB, and large images get their own memory anyway.
             allocation_sizes: gpu_allocator::AllocationSizes::new(32 << 20, 16 << 20),
         })
-        .map_err(|e| VulkanError::OutOfMemory { what: format!("the allocator ({e})"), mib: 0.0 })?;
-        let cache_file = options.cache.as_ref().map(|dir| dir.join(format!("pipelines-{}", info.cache_key)));
-        let blob = cache_file.as_deref().and_then(crate::files::read_checked).unwrap_or_default();
+        .map_err(|e| VulkanError::OutOfMemory {
+            what: format!("the allocator ({e})"),
+            mib: 0.0,
+        })?;
+        let cache_file = options
+            .cache
+            .as_ref()
+            .map(|dir| dir.join(format!("pipelines-{}", info.cache_key)));
+        let blob = cache_file
+            .as_deref()
+            .and_then(crate::files::read_checked)
+            .unwrap_or_default();
         let cache_info = vk::PipelineCacheCreateInfo::default().initial_data(&blob);
         // SAFETY: the driver checks the blob's header; its content was checked against its checksum.
         let pipeline_cache = unsafe { device.create_pipeline_cache(&cache_info, None) }
             .map_err(VulkanError::at("create the pipeline cache"))?;
-        let patience = options.patience.map(|p| if info.kind == "cpu" { p * 10 } else { p });
-        let names = debug_utils.then(|| Names { device: ext::debug_utils::Device::new(&instance, &device) });
+        let patience = options
+            .patience
+            .map(|p| if info.kind == "cpu" { p * 10 } else { p });
+        let names = debug_utils.then(|| Names {
+            device: ext::debug_utils::Device::new(&instance, &device),
+        });
         Ok(Arc::new(Gpu {
             device,
             queue: Mutex::new(queue),
@@ -494,17 +581,27 @@ impl Gpu {
             return Err(hung());
         }
         let (mut fence, mut patience) = (fence, self.patience);
-        match self.faults.as_ref().map_or(0, |f| f.0.swap(0, Ordering::Relaxed)) {
+        match self
+            .faults
+            .as_ref()
+            .map_or(0, |f| f.0.swap(0, Ordering::Relaxed))
+        {
             0 => {}
             1 => return Err(at()(vk::Result::ERROR_DEVICE_LOST)),
             2 => {
                 // SAFETY: a plain creation; a hung device leaves what it has.
-                fence = unsafe { self.device.create_fence(&vk::FenceCreateInfo::default(), None) }.map_err(at())?;
+                fence = unsafe {
+                    self.device
+                        .create_fence(&vk::FenceCreateInfo::default(), None)
+                }
+                .map_err(at())?;
                 patience = Some(SHORT);
             }
             _ => panic!("a panic that was asked for by a test"),
         }
-        let limit = patience.map_or(u64::MAX, |p| u64::try_from(p.as_nanos()).unwrap_or(u64::MAX));
+        let limit = patience.map_or(u64::MAX, |p| {
+            u64::try_from(p.as_nanos()).unwrap_or(u64::MAX)
+        });
         // SAFETY: the fence is this device's.
         match unsafe { self.device.wait_for_fences(&[fence], true, limit) } {
             Err(vk::Result::TIMEOUT) => {
@@ -527,7 +624,11 @@ impl Gpu {
 
     /// Validation messages so far; empty without validation.
     pub fn messages(&self) -> Vec<String> {
-        self.messages.0.lock().map(|m| m.clone()).unwrap_or_default()
+        self.messages
+            .0
+            .lock()
+            .map(|m| m.clone())
+            .unwrap_or_default()
     }
 
     /// Writes the pipeline cache to disk, whole or not at all. Failing to is no error: the next start is slower.
@@ -542,7 +643,9 @@ impl Gpu {
     pub(super) fn name<H: vk::Handle>(&self, handle: H, name: &str) {
         let Some(names) = &self.names else { return };
         let Ok(text) = CString::new(name) else { return };
-        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&text);
+        let info = vk::DebugUtilsObjectNameInfoEXT::default()
+            .object_handle(handle)
+            .object_name(&text);
         // SAFETY: the handle belongs to this device. A debugger's label has no effect if it fails.
         let _ = unsafe { names.device.set_debug_utils_object_name(&info) };
     }
@@ -581,14 +684,22 @@ fn create_device(
         .uniform_buffer_standard_layout(true)
         .shader_buffer_int64_atomics(have.int64_atomics);
     let priorities = [1.0];
-    let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&priorities)];
+    let queues = [vk::DeviceQueueCreateInfo::default()
+        .queue_family_index(family)
+        .queue_priorities(&priorities)];
     let extensions: Vec<_> = have
         .conservative_rasterization
         .then(|| ext::conservative_rasterization::NAME.as_ptr())
         .into_iter()
         .chain(present.then(|| khr::swapchain::NAME.as_ptr()))
-        .chain(have.shares_memory.then(|| khr::external_memory_fd::NAME.as_ptr()))
-        .chain(have.portability.then(|| khr::portability_subset::NAME.as_ptr()))
+        .chain(
+            have.shares_memory
+                .then(|| khr::external_memory_fd::NAME.as_ptr()),
+        )
+        .chain(
+            have.portability
+                .then(|| khr::portability_subset::NAME.as_ptr()),
+        )
         .collect();
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
@@ -597,7 +708,8 @@ fn create_device(
         .push_next(&mut v13)
         .push_next(&mut v12);
     // SAFETY: every feature and extension asked for was reported by this device.
-    unsafe { instance.create_device(physical, &info, None) }.map_err(VulkanError::at("open the device"))
+    unsafe { instance.create_device(physical, &info, None) }
+        .map_err(VulkanError::at("open the device"))
 }
 
 impl Drop for Gpu {
@@ -617,7 +729,8 @@ impl Drop for Gpu {
         // SAFETY: every object made from the device holds an `Arc` of this, so all are gone; the allocator frees its
         // memory before the device goes.
         unsafe {
-            self.device.destroy_pipeline_cache(self.pipeline_cache, None);
+            self.device
+                .destroy_pipeline_cache(self.pipeline_cache, None);
             if let Ok(mut allocator) = self.allocator.lock() {
                 allocator.take();
             }

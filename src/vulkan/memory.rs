@@ -14,8 +14,15 @@ pub(super) enum Memory {
     /// In memory that others lie in too.
     Shared(#[expect(dead_code, reason = "kept as long as the resource is")] Arc<SharedMemory>),
     /// In memory of its own that another device has too, or that is another device's: bytes and memory type.
-    #[cfg_attr(not(unix), expect(dead_code, reason = "shared by file descriptors alone"))]
-    Handed { memory: vk::DeviceMemory, bytes: u64, kind: u32 },
+    #[cfg_attr(
+        not(unix),
+        expect(dead_code, reason = "shared by file descriptors alone")
+    )]
+    Handed {
+        memory: vk::DeviceMemory,
+        bytes: u64,
+        kind: u32,
+    },
 }
 
 /// Memory of several resources.
@@ -104,14 +111,25 @@ fn allocate(
     location: MemoryLocation,
     scheme: AllocationScheme,
 ) -> Result<Allocation> {
-    let out_of_memory =
-        || VulkanError::OutOfMemory { what: format!("'{name}'"), mib: requirements.size as f64 / (1 << 20) as f64 };
+    let out_of_memory = || VulkanError::OutOfMemory {
+        what: format!("'{name}'"),
+        mib: requirements.size as f64 / (1 << 20) as f64,
+    };
     if requirements.size > gpu.info.heap && location == MemoryLocation::GpuOnly {
         return Err(out_of_memory());
     }
-    let desc = AllocationCreateDesc { name, requirements, location, linear: true, allocation_scheme: scheme };
+    let desc = AllocationCreateDesc {
+        name,
+        requirements,
+        location,
+        linear: true,
+        allocation_scheme: scheme,
+    };
     match gpu.allocator.lock() {
-        Ok(mut guard) => guard.as_mut().and_then(|a| a.allocate(&desc).ok()).ok_or_else(out_of_memory),
+        Ok(mut guard) => guard
+            .as_mut()
+            .and_then(|a| a.allocate(&desc).ok())
+            .ok_or_else(out_of_memory),
         Err(_) => Err(out_of_memory()),
     }
 }
@@ -137,7 +155,12 @@ impl Bare {
     /// Bytes that it needs, and what its offset is a multiple of where buffers and images lie side by side.
     pub fn needs(&self, gpu: &Gpu) -> (u64, u64) {
         let needs = self.requirements();
-        (needs.size, needs.alignment.max(gpu.info.limits.buffer_image_granularity))
+        (
+            needs.size,
+            needs
+                .alignment
+                .max(gpu.info.limits.buffer_image_granularity),
+        )
     }
 }
 
@@ -147,8 +170,16 @@ impl Bare {
 ///
 /// # Errors
 /// Out of memory.
-pub fn lay_together(gpu: &Arc<Gpu>, name: &str, resources: &mut [(Bare, u64)], size: u64) -> Result<()> {
-    let all: Vec<vk::MemoryRequirements> = resources.iter().map(|(bare, _)| bare.requirements()).collect();
+pub fn lay_together(
+    gpu: &Arc<Gpu>,
+    name: &str,
+    resources: &mut [(Bare, u64)],
+    size: u64,
+) -> Result<()> {
+    let all: Vec<vk::MemoryRequirements> = resources
+        .iter()
+        .map(|(bare, _)| bare.requirements())
+        .collect();
     let kinds = all.iter().fold(!0, |kinds, r| kinds & r.memory_type_bits);
     if kinds == 0 {
         return resources.iter_mut().try_for_each(|(bare, _)| match bare {
@@ -156,28 +187,46 @@ pub fn lay_together(gpu: &Arc<Gpu>, name: &str, resources: &mut [(Bare, u64)], s
             Bare::Image(i) => i.take_memory(),
         });
     }
-    let alignment = all.iter().map(|r| r.alignment).max().unwrap_or(1).max(gpu.info.limits.buffer_image_granularity);
+    let alignment = all
+        .iter()
+        .map(|r| r.alignment)
+        .max()
+        .unwrap_or(1)
+        .max(gpu.info.limits.buffer_image_granularity);
     let size = size.max(1).next_multiple_of(alignment);
-    let requirements = vk::MemoryRequirements { size, alignment, memory_type_bits: kinds };
+    let requirements = vk::MemoryRequirements {
+        size,
+        alignment,
+        memory_type_bits: kinds,
+    };
     let scheme = AllocationScheme::GpuAllocatorManaged;
     let allocation = allocate(gpu, name, requirements, MemoryLocation::GpuOnly, scheme)?;
     // SAFETY: the handle is used for binding alone, while the allocation lives.
     let (memory, start) = (unsafe { allocation.memory() }, allocation.offset());
-    let shared = Arc::new(SharedMemory { gpu: gpu.clone(), allocation: Some(allocation) });
+    let shared = Arc::new(SharedMemory {
+        gpu: gpu.clone(),
+        allocation: Some(allocation),
+    });
     for (bare, offset) in resources {
         let what = || format!("bind shared memory of '{name}'");
         match bare {
             Bare::Buffer(b) => {
                 // SAFETY: offsets are multiples of the alignment and the resource ends within the memory, as the caller
                 // laid it out by `needs`; its kind is one of all.
-                unsafe { gpu.device.bind_buffer_memory(b.handle, memory, start + *offset) }
-                    .map_err(VulkanError::at(what()))?;
+                unsafe {
+                    gpu.device
+                        .bind_buffer_memory(b.handle, memory, start + *offset)
+                }
+                .map_err(VulkanError::at(what()))?;
                 b.memory = Memory::Shared(shared.clone());
             }
             Bare::Image(i) => {
                 // SAFETY: as above.
-                unsafe { gpu.device.bind_image_memory(i.handle, memory, start + *offset) }
-                    .map_err(VulkanError::at(what()))?;
+                unsafe {
+                    gpu.device
+                        .bind_image_memory(i.handle, memory, start + *offset)
+                }
+                .map_err(VulkanError::at(what()))?;
                 i.memory = Memory::Shared(shared.clone());
             }
         }
@@ -223,19 +272,43 @@ impl Buffer {
     ///
     /// # Errors
     /// Out of memory.
-    pub fn bare(gpu: &Arc<Gpu>, name: &str, size: u64, usage: vk::BufferUsageFlags) -> Result<Buffer> {
-        Buffer::with(gpu, name, size, vk::BufferCreateInfo::default().usage(usage))
+    pub fn bare(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        size: u64,
+        usage: vk::BufferUsageFlags,
+    ) -> Result<Buffer> {
+        Buffer::with(
+            gpu,
+            name,
+            size,
+            vk::BufferCreateInfo::default().usage(usage),
+        )
     }
 
     /// A buffer of that size without memory, made as `info` says.
-    pub(super) fn with(gpu: &Arc<Gpu>, name: &str, size: u64, info: vk::BufferCreateInfo<'_>) -> Result<Buffer> {
+    pub(super) fn with(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        size: u64,
+        info: vk::BufferCreateInfo<'_>,
+    ) -> Result<Buffer> {
         let size = size.max(16).next_multiple_of(4);
         let info = info.size(size);
         // SAFETY: a plain creation; the handle is destroyed in `drop`.
-        let handle = unsafe { gpu.device.create_buffer(&info, None) }
-            .map_err(|_| VulkanError::OutOfMemory { what: format!("'{name}'"), mib: size as f64 / 1048576.0 })?;
+        let handle = unsafe { gpu.device.create_buffer(&info, None) }.map_err(|_| {
+            VulkanError::OutOfMemory {
+                what: format!("'{name}'"),
+                mib: size as f64 / 1048576.0,
+            }
+        })?;
         gpu.name(handle, name);
-        Ok(Buffer { gpu: gpu.clone(), handle, memory: Memory::None, size })
+        Ok(Buffer {
+            gpu: gpu.clone(),
+            handle,
+            memory: Memory::None,
+            size,
+        })
     }
 
     fn take_memory(&mut self, location: MemoryLocation, name: &str) -> Result<()> {
@@ -249,7 +322,10 @@ impl Buffer {
         };
         let allocation = allocate(gpu, name, requirements, location, scheme)?;
         // SAFETY: the memory is new, large enough and of an allowed type (the allocator chose by `requirements`).
-        let bound = unsafe { gpu.device.bind_buffer_memory(handle, allocation.memory(), allocation.offset()) };
+        let bound = unsafe {
+            gpu.device
+                .bind_buffer_memory(handle, allocation.memory(), allocation.offset())
+        };
         self.memory = Memory::Own(allocation);
         bound.map_err(VulkanError::at(format!("bind the memory of '{name}'")))
     }
@@ -309,7 +385,11 @@ impl Image {
     /// As [`Image::new`].
     pub fn bare(gpu: &Arc<Gpu>, desc: ImageDesc) -> Result<Image> {
         let limits = &gpu.info.limits;
-        let limit = if desc.volume { limits.max_image_dimension3_d } else { limits.max_image_dimension2_d };
+        let limit = if desc.volume {
+            limits.max_image_dimension3_d
+        } else {
+            limits.max_image_dimension2_d
+        };
         let refuse = |asked: String, limit: String| VulkanError::Limit {
             what: format!("'{}'", desc.name),
             asked,
@@ -318,17 +398,33 @@ impl Image {
         };
         let [x, y, z] = desc.extent;
         if x.max(y).max(z) > limit || x.min(y).min(z) == 0 {
-            return Err(refuse(format!("{x}x{y}x{z}"), format!("{limit} texels a side (and at least 1)")));
+            return Err(refuse(
+                format!("{x}x{y}x{z}"),
+                format!("{limit} texels a side (and at least 1)"),
+            ));
         }
         if desc.layers > limits.max_image_array_layers {
-            return Err(refuse(format!("{} layers", desc.layers), limits.max_image_array_layers.to_string()));
+            return Err(refuse(
+                format!("{} layers", desc.layers),
+                limits.max_image_array_layers.to_string(),
+            ));
         }
-        let formats: Vec<vk::Format> = std::iter::once(desc.format).chain(desc.views.iter().copied()).collect();
+        let formats: Vec<vk::Format> = std::iter::once(desc.format)
+            .chain(desc.views.iter().copied())
+            .collect();
         let mut list = vk::ImageFormatListCreateInfo::default().view_formats(&formats);
         let mut info = vk::ImageCreateInfo::default()
-            .image_type(if desc.volume { vk::ImageType::TYPE_3D } else { vk::ImageType::TYPE_2D })
+            .image_type(if desc.volume {
+                vk::ImageType::TYPE_3D
+            } else {
+                vk::ImageType::TYPE_2D
+            })
             .format(desc.format)
-            .extent(vk::Extent3D { width: x, height: y, depth: z })
+            .extent(vk::Extent3D {
+                width: x,
+                height: y,
+                depth: z,
+            })
             .mip_levels(desc.mips)
             .array_layers(desc.layers)
             .samples(vk::SampleCountFlags::TYPE_1)
@@ -340,12 +436,19 @@ impl Image {
                 .push_next(&mut list);
         }
         // SAFETY: a plain creation; the handle is destroyed in `drop`.
-        let handle = unsafe { gpu.device.create_image(&info, None) }
-            .map_err(VulkanError::at(format!("create the image '{}' ({x}x{y}x{z})", desc.name)))?;
+        let handle = unsafe { gpu.device.create_image(&info, None) }.map_err(VulkanError::at(
+            format!("create the image '{}' ({x}x{y}x{z})", desc.name),
+        ))?;
         gpu.name(handle, &desc.name);
         // SAFETY: the handle is this device's.
         let bytes = unsafe { gpu.device.get_image_memory_requirements(handle) }.size;
-        Ok(Image { gpu: gpu.clone(), handle, memory: Memory::None, bytes, desc })
+        Ok(Image {
+            gpu: gpu.clone(),
+            handle,
+            memory: Memory::None,
+            bytes,
+            desc,
+        })
     }
 
     fn take_memory(&mut self) -> Result<()> {
@@ -356,7 +459,10 @@ impl Image {
         let scheme = AllocationScheme::DedicatedImage(handle);
         let allocation = allocate(gpu, name, requirements, MemoryLocation::GpuOnly, scheme)?;
         // SAFETY: as for buffers.
-        let bound = unsafe { gpu.device.bind_image_memory(handle, allocation.memory(), allocation.offset()) };
+        let bound = unsafe {
+            gpu.device
+                .bind_image_memory(handle, allocation.memory(), allocation.offset())
+        };
         let bound = bound.map_err(VulkanError::at(format!("bind the memory of '{name}'")));
         self.memory = Memory::Own(allocation);
         bound
@@ -402,10 +508,21 @@ impl View {
     /// Vulkan's own.
     pub(super) fn opaque(image: &Arc<Image>, desc: &ViewDesc) -> Result<View> {
         let one = vk::ComponentSwizzle::ONE;
-        View::swizzled(image, desc, vk::ComponentMapping { a: one, ..vk::ComponentMapping::default() })
+        View::swizzled(
+            image,
+            desc,
+            vk::ComponentMapping {
+                a: one,
+                ..vk::ComponentMapping::default()
+            },
+        )
     }
 
-    fn swizzled(image: &Arc<Image>, desc: &ViewDesc, components: vk::ComponentMapping) -> Result<View> {
+    fn swizzled(
+        image: &Arc<Image>,
+        desc: &ViewDesc,
+        components: vk::ComponentMapping,
+    ) -> Result<View> {
         let mut usage = vk::ImageViewUsageCreateInfo::default().usage(desc.usage);
         let info = vk::ImageViewCreateInfo::default()
             .push_next(&mut usage)
@@ -422,10 +539,14 @@ impl View {
                     .layer_count(desc.layers.1),
             );
         // SAFETY: the image is kept alive by the view.
-        let handle = unsafe { image.gpu.device.create_image_view(&info, None) }
-            .map_err(VulkanError::at(format!("view the image '{}'", image.desc.name)))?;
+        let handle = unsafe { image.gpu.device.create_image_view(&info, None) }.map_err(
+            VulkanError::at(format!("view the image '{}'", image.desc.name)),
+        )?;
         image.gpu.name(handle, &image.desc.name);
-        Ok(View { handle, image: image.clone() })
+        Ok(View {
+            handle,
+            image: image.clone(),
+        })
     }
 }
 
@@ -449,7 +570,11 @@ pub struct Upload {
 impl Upload {
     /// Starts collecting.
     pub fn new(gpu: &Arc<Gpu>) -> Upload {
-        Upload { gpu: gpu.clone(), buffers: Vec::new(), images: Vec::new() }
+        Upload {
+            gpu: gpu.clone(),
+            buffers: Vec::new(),
+            images: Vec::new(),
+        }
     }
 
     fn staging(&self, bytes: &[u8]) -> Result<Buffer> {
@@ -468,9 +593,20 @@ impl Upload {
     ///
     /// # Errors
     /// Out of memory.
-    pub fn buffer(&mut self, name: &str, bytes: &[u8], usage: vk::BufferUsageFlags) -> Result<Arc<Buffer>> {
+    pub fn buffer(
+        &mut self,
+        name: &str,
+        bytes: &[u8],
+        usage: vk::BufferUsageFlags,
+    ) -> Result<Arc<Buffer>> {
         let usage = usage | vk::BufferUsageFlags::TRANSFER_DST;
-        let buffer = Arc::new(Buffer::new(&self.gpu, name, bytes.len() as u64, usage, MemoryLocation::GpuOnly)?);
+        let buffer = Arc::new(Buffer::new(
+            &self.gpu,
+            name,
+            bytes.len() as u64,
+            usage,
+            MemoryLocation::GpuOnly,
+        )?);
         if !bytes.is_empty() {
             let staging = self.staging(bytes)?;
             self.buffers.push((buffer.clone(), staging));
@@ -500,7 +636,11 @@ impl Upload {
                                 .base_array_layer(layer)
                                 .layer_count(1),
                         )
-                        .image_extent(vk::Extent3D { width, height, depth }),
+                        .image_extent(vk::Extent3D {
+                            width,
+                            height,
+                            depth,
+                        }),
                 );
                 bytes.extend_from_slice(part);
             }

@@ -23,8 +23,8 @@ pub use gpu::{DeviceInfo, Faults, Features, Gpu, GpuOptions, list_devices};
 pub use memory::{Bare, Buffer, Image, ImageDesc, Upload, View, ViewDesc, lay_together};
 pub use painter::{Painter, PixelSource, Pixels};
 pub use pipeline::{
-    Attachments, BindingDesc, Blend, DescriptorPool, DescriptorSet, DescriptorWrite, DrawState, Pipeline, PipelineDesc,
-    SpecValue, Stage, StageDesc,
+    Attachments, BindingDesc, Blend, DescriptorPool, DescriptorSet, DescriptorWrite, DrawState,
+    Pipeline, PipelineDesc, SpecValue, Stage, StageDesc,
 };
 pub use sampler::{Sampler, SamplerDesc};
 pub use share::DeviceId;
@@ -47,10 +47,14 @@ pub enum VulkanError {
         found: String,
     },
     /// The validation layer was asked for and is not installed.
-    #[error("the Vulkan validation layer is not installed (Debian, Ubuntu: vulkan-validationlayers)")]
+    #[error(
+        "the Vulkan validation layer is not installed (Debian, Ubuntu: vulkan-validationlayers)"
+    )]
     NoValidation,
     /// Device memory ran out.
-    #[error("out of device memory: {what} needs {mib:.0} MiB. Use a smaller picture, or what else makes it smaller")]
+    #[error(
+        "out of device memory: {what} needs {mib:.0} MiB. Use a smaller picture, or what else makes it smaller"
+    )]
     OutOfMemory {
         /// The resource that did not fit.
         what: String,
@@ -73,10 +77,14 @@ pub enum VulkanError {
     #[error("the GPU was lost during {0}: a shader ran too long, or the driver failed")]
     Lost(String),
     /// A frame did not end in the time that is allowed for it ([`GpuOptions::patience`]).
-    #[error("the GPU has not finished a frame within {0:.0} s: a shader hangs, or asks for too much")]
+    #[error(
+        "the GPU has not finished a frame within {0:.0} s: a shader hangs, or asks for too much"
+    )]
     Hung(f64),
     /// The device cannot show pictures in this window.
-    #[error("{0} cannot present to this window. Name another device with --window-device (see `conelab devices`)")]
+    #[error(
+        "{0} cannot present to this window. Name another device with --window-device (see `conelab devices`)"
+    )]
     CannotPresent(String),
     /// The window system.
     #[error("the window failed: {0}")]

@@ -1,7 +1,10 @@
 //! Paints egui's triangles and the program's pictures, into a window or into an image.
 
 use super::surface::{Surface, Swapchain, WHOLE};
-use super::{Buffer, FrameSlot, Gpu, Image, ImageDesc, Result, Sampler, SamplerDesc, View, ViewDesc, VulkanError, vk};
+use super::{
+    Buffer, FrameSlot, Gpu, Image, ImageDesc, Result, Sampler, SamplerDesc, View, ViewDesc,
+    VulkanError, vk,
+};
 use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_ash_renderer::allocator::DefaultAllocator;
 use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer, vulkan};
@@ -11,7 +14,11 @@ use std::time::Instant;
 
 /// Where the painter's pixels go.
 enum Target {
-    Window { surface: Box<Surface>, swapchain: Option<Swapchain>, stale: bool },
+    Window {
+        surface: Box<Surface>,
+        swapchain: Option<Swapchain>,
+        stale: bool,
+    },
     Image(Option<(Arc<Image>, View)>),
 }
 
@@ -87,10 +94,26 @@ impl Painter {
     ///
     /// # Errors
     /// The device cannot present to the window, out of memory.
-    pub fn for_window(gpu: &Arc<Gpu>, surface: Surface, size: (u32, u32), pictures: usize) -> Result<Painter> {
+    pub fn for_window(
+        gpu: &Arc<Gpu>,
+        surface: Surface,
+        size: (u32, u32),
+        pictures: usize,
+    ) -> Result<Painter> {
         let swapchain = Swapchain::new(gpu, &surface, size)?;
-        let format = swapchain.as_ref().map_or(vk::Format::B8G8R8A8_SRGB, |s| s.format);
-        Painter::new(gpu, Target::Window { surface: Box::new(surface), swapchain, stale: false }, format, pictures)
+        let format = swapchain
+            .as_ref()
+            .map_or(vk::Format::B8G8R8A8_SRGB, |s| s.format);
+        Painter::new(
+            gpu,
+            Target::Window {
+                surface: Box::new(surface),
+                swapchain,
+                stale: false,
+            },
+            format,
+            pictures,
+        )
     }
 
     /// A painter into an image, read back with [`Painter::read`].
@@ -98,7 +121,12 @@ impl Painter {
     /// # Errors
     /// Out of memory.
     pub fn offscreen(gpu: &Arc<Gpu>, pictures: usize) -> Result<Painter> {
-        Painter::new(gpu, Target::Image(None), vk::Format::R8G8B8A8_SRGB, pictures)
+        Painter::new(
+            gpu,
+            Target::Image(None),
+            vk::Format::R8G8B8A8_SRGB,
+            pictures,
+        )
     }
 
     fn new(gpu: &Arc<Gpu>, target: Target, format: vk::Format, pictures: usize) -> Result<Painter> {
@@ -115,7 +143,8 @@ impl Painter {
             },
         )?;
         // The layout is declared to be one that the renderer's own is compatible with.
-        let layout = vulkan::create_vulkan_descriptor_set_layout(&gpu.device).map_err(renderer_error)?;
+        let layout =
+            vulkan::create_vulkan_descriptor_set_layout(&gpu.device).map_err(renderer_error)?;
         let mut painter = Painter {
             renderer: None,
             pictures: Vec::new(),
@@ -142,14 +171,25 @@ impl Painter {
                 .queue_family_index(gpu.family)
                 .flags(vk::CommandPoolCreateFlags::TRANSIENT);
             painter.upload_pool = d.create_command_pool(&info, None).map_err(at())?;
-            let sizes =
-                [vk::DescriptorPoolSize { ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER, descriptor_count: count }];
-            let info = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
+            let sizes = [vk::DescriptorPoolSize {
+                ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+                descriptor_count: count,
+            }];
+            let info = vk::DescriptorPoolCreateInfo::default()
+                .max_sets(count)
+                .pool_sizes(&sizes);
             painter.pool = d.create_descriptor_pool(&info, None).map_err(at())?;
             for _ in 0..SLOTS {
                 let commands = FrameSlot::new(gpu, 3)?;
-                let acquired = d.create_semaphore(&Default::default(), None).map_err(at())?;
-                painter.slots.push(Slot { commands, acquired, staging: Vec::new(), reads: Vec::new() });
+                let acquired = d
+                    .create_semaphore(&Default::default(), None)
+                    .map_err(at())?;
+                painter.slots.push(Slot {
+                    commands,
+                    acquired,
+                    staging: Vec::new(),
+                    reads: Vec::new(),
+                });
             }
         }
         painter.make_renderer(pictures)?;
@@ -162,19 +202,34 @@ impl Painter {
             depth_attachment_format: None,
             stencil_attachment_format: None,
         });
-        let options = Options { in_flight_frames: SLOTS, srgb_framebuffer: is_srgb(self.format), ..Options::default() };
+        let options = Options {
+            in_flight_frames: SLOTS,
+            srgb_framebuffer: is_srgb(self.format),
+            ..Options::default()
+        };
         let gpu = &self.gpu;
-        let mut renderer =
-            Renderer::with_default_allocator(&gpu.instance, gpu.physical, gpu.device.clone(), mode, options)
-                .map_err(renderer_error)?;
+        let mut renderer = Renderer::with_default_allocator(
+            &gpu.instance,
+            gpu.physical,
+            gpu.device.clone(),
+            mode,
+            options,
+        )
+        .map_err(renderer_error)?;
         for _ in 0..pictures {
             let layouts = [self.layout];
-            let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(self.pool).set_layouts(&layouts);
+            let info = vk::DescriptorSetAllocateInfo::default()
+                .descriptor_pool(self.pool)
+                .set_layouts(&layouts);
             // SAFETY: pool and layout are alive.
-            let set =
-                unsafe { gpu.device.allocate_descriptor_sets(&info) }.map_err(VulkanError::at("prepare to paint"))?[0];
+            let set = unsafe { gpu.device.allocate_descriptor_sets(&info) }
+                .map_err(VulkanError::at("prepare to paint"))?[0];
             let id = renderer.add_user_texture(set);
-            self.pictures.push(Picture { image: None, set, id });
+            self.pictures.push(Picture {
+                image: None,
+                set,
+                id,
+            });
         }
         self.renderer = Some(renderer);
         Ok(())
@@ -225,16 +280,35 @@ impl Painter {
             return Ok(false);
         };
         self.stage(pixels)?;
-        let Painter { slots, renderer, pictures, gpu, .. } = self;
-        let Some(renderer) = renderer else { return Ok(false) };
-        let Slot { commands, acquired, staging, reads } = &mut slots[slot];
+        let Painter {
+            slots,
+            renderer,
+            pictures,
+            gpu,
+            ..
+        } = self;
+        let Some(renderer) = renderer else {
+            return Ok(false);
+        };
+        let Slot {
+            commands,
+            acquired,
+            staging,
+            reads,
+        } = &mut slots[slot];
         let mut result = Ok(());
         let to_present = swap.is_some();
         let semaphores = swap.map(|drawn| (*acquired, drawn));
         commands.submit_between(semaphores, |commands| {
             commands.timestamp();
             for p in pixels {
-                let Some(Picture { image: Some((image, _)), .. }) = pictures.get(p.picture) else { continue };
+                let Some(Picture {
+                    image: Some((image, _)),
+                    ..
+                }) = pictures.get(p.picture)
+                else {
+                    continue;
+                };
                 match p.source {
                     PixelSource::Bytes(_) => {
                         if let Some(Some(staging)) = staging.get(p.picture) {
@@ -242,7 +316,9 @@ impl Painter {
                         }
                     }
                     PixelSource::Shared(theirs) => {
-                        if let Some((_, ours)) = reads.iter().find(|(from, _)| Arc::ptr_eq(from, theirs)) {
+                        if let Some((_, ours)) =
+                            reads.iter().find(|(from, _)| Arc::ptr_eq(from, theirs))
+                        {
                             commands.take_over(ours);
                             commands.refill(image, ours);
                         }
@@ -250,7 +326,11 @@ impl Painter {
                 }
             }
             commands.timestamp();
-            commands.attach(image, vk::ImageLayout::UNDEFINED, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
+            commands.attach(
+                image,
+                vk::ImageLayout::UNDEFINED,
+                vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
+            );
             let color = [vk::RenderingAttachmentInfo::default()
                 .image_view(view)
                 .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
@@ -265,7 +345,11 @@ impl Painter {
             result = renderer.cmd_draw(commands.handle, extent, scale, primitives);
             // SAFETY: as above.
             unsafe { gpu.device.cmd_end_rendering(commands.handle) };
-            let end = if to_present { vk::ImageLayout::PRESENT_SRC_KHR } else { vk::ImageLayout::TRANSFER_SRC_OPTIMAL };
+            let end = if to_present {
+                vk::ImageLayout::PRESENT_SRC_KHR
+            } else {
+                vk::ImageLayout::TRANSFER_SRC_OPTIMAL
+            };
             commands.attach(image, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, end);
             commands.timestamp();
         })?;
@@ -277,18 +361,28 @@ impl Painter {
     }
 
     fn change_textures(&mut self, textures: &mut TexturesDelta) -> Result<()> {
-        let Some(renderer) = &mut self.renderer else { return Ok(()) };
-        let queue = self.gpu.queue.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let Some(renderer) = &mut self.renderer else {
+            return Ok(());
+        };
+        let queue = self
+            .gpu
+            .queue
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
         for (id, deltas) in std::mem::take(&mut textures.set) {
             for delta in &deltas {
-                renderer.set_texture(*queue, self.upload_pool, id, delta).map_err(renderer_error)?;
+                renderer
+                    .set_texture(*queue, self.upload_pool, id, delta)
+                    .map_err(renderer_error)?;
             }
         }
         Ok(())
     }
 
     fn free_textures(&mut self, textures: &TexturesDelta) -> Result<()> {
-        let Some(renderer) = self.renderer.as_mut().filter(|_| !textures.free.is_empty()) else { return Ok(()) };
+        let Some(renderer) = self.renderer.as_mut().filter(|_| !textures.free.is_empty()) else {
+            return Ok(());
+        };
         // Rare (a thumbnail that is gone): not worth remembering which frames still use them.
         for slot in &mut self.slots {
             slot.commands.wait()?;
@@ -301,9 +395,15 @@ impl Painter {
 
     /// Gives a picture an image of the size of its new pixels.
     fn fit_picture(&mut self, p: &Pixels<'_>) -> Result<()> {
-        let Some(picture) = self.pictures.get(p.picture) else { return Ok(()) };
+        let Some(picture) = self.pictures.get(p.picture) else {
+            return Ok(());
+        };
         let extent = [p.size[0], p.size[1], 1];
-        if picture.image.as_ref().is_some_and(|(image, _)| image.desc.extent == extent) {
+        if picture
+            .image
+            .as_ref()
+            .is_some_and(|(image, _)| image.desc.extent == extent)
+        {
             return Ok(());
         }
         for slot in &mut self.slots {
@@ -312,7 +412,14 @@ impl Painter {
         // Decoded when sampled and encoded when drawn, both by the device: the bytes arrive as they are.
         let format = vk::Format::R8G8B8A8_SRGB;
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
-        let (image, view) = plain_image(&self.gpu, "picture", p.size, format, usage, vk::ImageUsageFlags::SAMPLED)?;
+        let (image, view) = plain_image(
+            &self.gpu,
+            "picture",
+            p.size,
+            format,
+            usage,
+            vk::ImageUsageFlags::SAMPLED,
+        )?;
         let info = [vk::DescriptorImageInfo::default()
             .sampler(self.sampler.handle)
             .image_view(view.handle)
@@ -331,18 +438,26 @@ impl Painter {
     fn stage(&mut self, pixels: &[Pixels<'_>]) -> Result<()> {
         // Pictures change their size: what their old buffers were is let go.
         let held = |b: &Arc<Buffer>| Arc::strong_count(b) > 1;
-        self.taken.retain(|(theirs, ours)| theirs.strong_count() > 0 || held(ours));
+        self.taken
+            .retain(|(theirs, ours)| theirs.strong_count() > 0 || held(ours));
         let Slot { staging, reads, .. } = &mut self.slots[self.frame % SLOTS];
         staging.resize_with(self.pictures.len(), || None);
         for p in pixels.iter().filter(|p| p.picture < self.pictures.len()) {
             let bytes = match p.source {
                 PixelSource::Bytes(bytes) => bytes,
                 PixelSource::Shared(theirs) => {
-                    let known = self.taken.iter().find(|(from, _)| std::ptr::eq(from.as_ptr(), Arc::as_ptr(theirs)));
+                    let known = self
+                        .taken
+                        .iter()
+                        .find(|(from, _)| std::ptr::eq(from.as_ptr(), Arc::as_ptr(theirs)));
                     let ours = match known {
                         Some((_, ours)) => ours.clone(),
                         None => {
-                            let ours = Arc::new(Buffer::taken(&self.gpu, "picture of the engine", theirs)?);
+                            let ours = Arc::new(Buffer::taken(
+                                &self.gpu,
+                                "picture of the engine",
+                                theirs,
+                            )?);
                             self.taken.push((Arc::downgrade(theirs), ours.clone()));
                             ours
                         }
@@ -355,7 +470,13 @@ impl Painter {
             let place = &mut staging[p.picture];
             if place.as_ref().is_none_or(|b| b.size != size) {
                 let usage = vk::BufferUsageFlags::TRANSFER_SRC;
-                *place = Some(Buffer::new(&self.gpu, "picture upload", size, usage, MemoryLocation::CpuToGpu)?);
+                *place = Some(Buffer::new(
+                    &self.gpu,
+                    "picture upload",
+                    size,
+                    usage,
+                    MemoryLocation::CpuToGpu,
+                )?);
             }
             if let Some(buffer) = place {
                 buffer.bytes_mut()[..bytes.len()].copy_from_slice(bytes);
@@ -370,11 +491,20 @@ impl Painter {
         &mut self,
         size: (u32, u32),
         slot: usize,
-    ) -> Result<Option<(vk::Image, vk::ImageView, vk::Extent2D, Option<vk::Semaphore>)>> {
+    ) -> Result<
+        Option<(
+            vk::Image,
+            vk::ImageView,
+            vk::Extent2D,
+            Option<vk::Semaphore>,
+        )>,
+    > {
         let acquired = self.slots[slot].acquired;
         match &mut self.target {
             Target::Image(image) => {
-                let fits = image.as_ref().is_some_and(|(i, _)| i.desc.extent == [size.0, size.1, 1]);
+                let fits = image
+                    .as_ref()
+                    .is_some_and(|(i, _)| i.desc.extent == [size.0, size.1, 1]);
                 if !fits {
                     for slot in &mut self.slots {
                         slot.commands.wait()?;
@@ -382,17 +512,36 @@ impl Painter {
                     let color = vk::ImageUsageFlags::COLOR_ATTACHMENT;
                     let usage = color | vk::ImageUsageFlags::TRANSFER_SRC;
                     let size = [size.0, size.1];
-                    *image = Some(plain_image(&self.gpu, "interface", size, self.format, usage, color)?);
+                    *image = Some(plain_image(
+                        &self.gpu,
+                        "interface",
+                        size,
+                        self.format,
+                        usage,
+                        color,
+                    )?);
                 }
-                let extent = vk::Extent2D { width: size.0, height: size.1 };
-                Ok(image.as_ref().map(|(image, view)| (image.handle, view.handle, extent, None)))
+                let extent = vk::Extent2D {
+                    width: size.0,
+                    height: size.1,
+                };
+                Ok(image
+                    .as_ref()
+                    .map(|(image, view)| (image.handle, view.handle, extent, None)))
             }
-            Target::Window { surface, swapchain, stale } => {
+            Target::Window {
+                surface,
+                swapchain,
+                stale,
+            } => {
                 for _ in 0..3 {
                     if *stale || swapchain.is_none() {
                         *swapchain = None;
                         *swapchain = match Swapchain::new(&self.gpu, surface, size) {
-                            Err(VulkanError::Code { code: vk::Result::ERROR_SURFACE_LOST_KHR, .. }) => {
+                            Err(VulkanError::Code {
+                                code: vk::Result::ERROR_SURFACE_LOST_KHR,
+                                ..
+                            }) => {
                                 surface.renew()?;
                                 Swapchain::new(&self.gpu, surface, size)?
                             }
@@ -400,18 +549,31 @@ impl Painter {
                         };
                         *stale = false;
                     }
-                    let Some(chain) = swapchain else { return Ok(None) };
+                    let Some(chain) = swapchain else {
+                        return Ok(None);
+                    };
                     // A window that is hidden may give no image for long: the program must not stand still.
                     let timeout = 100_000_000;
                     // SAFETY: the semaphore is unused: its last frame has been waited for.
-                    let next =
-                        unsafe { chain.loader.acquire_next_image(chain.handle, timeout, acquired, vk::Fence::null()) };
+                    let next = unsafe {
+                        chain.loader.acquire_next_image(
+                            chain.handle,
+                            timeout,
+                            acquired,
+                            vk::Fence::null(),
+                        )
+                    };
                     match next {
                         Ok((index, suboptimal)) => {
                             *stale = suboptimal;
                             self.acquired_image = Some(index);
                             let i = index as usize;
-                            return Ok(Some((chain.images[i], chain.views[i], chain.extent, Some(chain.drawn[i]))));
+                            return Ok(Some((
+                                chain.images[i],
+                                chain.views[i],
+                                chain.extent,
+                                Some(chain.drawn[i]),
+                            )));
                         }
                         Err(vk::Result::TIMEOUT | vk::Result::NOT_READY) => return Ok(None),
                         Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => *stale = true,
@@ -420,7 +582,9 @@ impl Painter {
                             surface.renew()?;
                             *stale = true;
                         }
-                        Err(code) => return Err(VulkanError::at("get the window's next image")(code)),
+                        Err(code) => {
+                            return Err(VulkanError::at("get the window's next image")(code));
+                        }
                     }
                 }
                 Ok(None)
@@ -429,15 +593,33 @@ impl Painter {
     }
 
     fn present(&mut self) -> Result<()> {
-        let Target::Window { swapchain: Some(chain), stale, .. } = &mut self.target else { return Ok(()) };
-        let Some(index) = self.acquired_image.take() else { return Ok(()) };
+        let Target::Window {
+            swapchain: Some(chain),
+            stale,
+            ..
+        } = &mut self.target
+        else {
+            return Ok(());
+        };
+        let Some(index) = self.acquired_image.take() else {
+            return Ok(());
+        };
         let (chains, indices, wait) = ([chain.handle], [index], [chain.drawn[index as usize]]);
-        let info = vk::PresentInfoKHR::default().wait_semaphores(&wait).swapchains(&chains).image_indices(&indices);
-        let queue = self.gpu.queue.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let info = vk::PresentInfoKHR::default()
+            .wait_semaphores(&wait)
+            .swapchains(&chains)
+            .image_indices(&indices);
+        let queue = self
+            .gpu
+            .queue
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
         // SAFETY: the image was acquired and its drawing signals the semaphore.
         match unsafe { chain.loader.queue_present(*queue, &info) } {
             Ok(suboptimal) => *stale |= suboptimal,
-            Err(vk::Result::ERROR_OUT_OF_DATE_KHR | vk::Result::ERROR_SURFACE_LOST_KHR) => *stale = true,
+            Err(vk::Result::ERROR_OUT_OF_DATE_KHR | vk::Result::ERROR_SURFACE_LOST_KHR) => {
+                *stale = true
+            }
             Err(code) => return Err(VulkanError::at("present a picture")(code)),
         }
         Ok(())
@@ -457,17 +639,36 @@ impl Painter {
         let [w, h, _] = image.desc.extent;
         let size = u64::from(w) * u64::from(h) * 4;
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
-        let target = Buffer::new(&self.gpu, "screenshot", size, usage, MemoryLocation::GpuToCpu)?;
+        let target = Buffer::new(
+            &self.gpu,
+            "screenshot",
+            size,
+            usage,
+            MemoryLocation::GpuToCpu,
+        )?;
         super::Commands::once(&self.gpu, |commands| {
-            commands.read_image(image, vk::ImageLayout::TRANSFER_SRC_OPTIMAL, 0, 0, None, &target);
+            commands.read_image(
+                image,
+                vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+                0,
+                0,
+                None,
+                &target,
+            );
             commands.full_barrier();
         })?;
-        Ok(([w, h], target.bytes()[..usize::try_from(size).unwrap_or(0)].to_vec()))
+        Ok((
+            [w, h],
+            target.bytes()[..usize::try_from(size).unwrap_or(0)].to_vec(),
+        ))
     }
 }
 
 fn is_srgb(format: vk::Format) -> bool {
-    matches!(format, vk::Format::R8G8B8A8_SRGB | vk::Format::B8G8R8A8_SRGB)
+    matches!(
+        format,
+        vk::Format::R8G8B8A8_SRGB | vk::Format::B8G8R8A8_SRGB
+    )
 }
 
 fn plain_image(
@@ -499,7 +700,11 @@ fn plain_image(
     };
     // Attachments must be viewed as they are.
     let sampled = view_usage.contains(vk::ImageUsageFlags::SAMPLED);
-    let view = if sampled { View::opaque(&image, &desc)? } else { View::new(&image, &desc)? };
+    let view = if sampled {
+        View::opaque(&image, &desc)?
+    } else {
+        View::new(&image, &desc)?
+    };
     Ok((image, view))
 }
 

@@ -37,7 +37,10 @@ impl Stage {
     /// The stage that a file name's extension means.
     pub fn of_file(name: &str) -> Option<Stage> {
         let extension = name.rsplit_once('.')?.1;
-        Stage::ALL.iter().find(|(_, e)| *e == extension).map(|(s, _)| *s)
+        Stage::ALL
+            .iter()
+            .find(|(_, e)| *e == extension)
+            .map(|(s, _)| *s)
     }
 
     fn flag(self) -> vk::ShaderStageFlags {
@@ -119,7 +122,10 @@ impl Blend {
     fn state(self) -> vk::PipelineColorBlendAttachmentState {
         let (src, dst) = match self {
             Blend::Off => (vk::BlendFactor::ONE, vk::BlendFactor::ZERO),
-            Blend::Alpha => (vk::BlendFactor::SRC_ALPHA, vk::BlendFactor::ONE_MINUS_SRC_ALPHA),
+            Blend::Alpha => (
+                vk::BlendFactor::SRC_ALPHA,
+                vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
+            ),
             Blend::Add | Blend::Min | Blend::Max => (vk::BlendFactor::ONE, vk::BlendFactor::ONE),
         };
         let op = match self {
@@ -204,35 +210,53 @@ impl Pipeline {
                     .stage_flags(b.stage.flag())
             })
             .collect();
-        let push_stages = desc.stages.iter().fold(vk::ShaderStageFlags::empty(), |a, s| a | s.stage.flag());
+        let push_stages = desc
+            .stages
+            .iter()
+            .fold(vk::ShaderStageFlags::empty(), |a, s| a | s.stage.flag());
         let at = |what: &str| VulkanError::at(format!("{what} of pass '{}'", desc.name));
         let mut pipeline = Pipeline {
             gpu: gpu.clone(),
             handle: vk::Pipeline::null(),
             layout: vk::PipelineLayout::null(),
             set_layout: vk::DescriptorSetLayout::null(),
-            point: if desc.draw.is_some() { vk::PipelineBindPoint::GRAPHICS } else { vk::PipelineBindPoint::COMPUTE },
+            point: if desc.draw.is_some() {
+                vk::PipelineBindPoint::GRAPHICS
+            } else {
+                vk::PipelineBindPoint::COMPUTE
+            },
             push_stages,
         };
         // SAFETY: creation calls with structures that outlive them; `drop` destroys what was made, null or not.
         unsafe {
             let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-            pipeline.set_layout =
-                gpu.device.create_descriptor_set_layout(&info, None).map_err(at("create the bindings"))?;
+            pipeline.set_layout = gpu
+                .device
+                .create_descriptor_set_layout(&info, None)
+                .map_err(at("create the bindings"))?;
             let sets = [pipeline.set_layout];
-            let ranges = [vk::PushConstantRange::default().stage_flags(push_stages).size(desc.push_bytes)];
+            let ranges = [vk::PushConstantRange::default()
+                .stage_flags(push_stages)
+                .size(desc.push_bytes)];
             let mut info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
             if desc.push_bytes > 0 {
                 info = info.push_constant_ranges(&ranges);
             }
-            pipeline.layout = gpu.device.create_pipeline_layout(&info, None).map_err(at("create the layout"))?;
+            pipeline.layout = gpu
+                .device
+                .create_pipeline_layout(&info, None)
+                .map_err(at("create the layout"))?;
         }
         let modules = Modules::new(gpu, desc)?;
         let constants: Vec<(Vec<vk::SpecializationMapEntry>, Vec<u8>)> =
             desc.stages.iter().map(pack_constants).collect();
         let specials: Vec<_> = constants
             .iter()
-            .map(|(entries, data)| vk::SpecializationInfo::default().map_entries(entries).data(data))
+            .map(|(entries, data)| {
+                vk::SpecializationInfo::default()
+                    .map_entries(entries)
+                    .data(data)
+            })
             .collect();
         let entry = CString::from(c"main");
         let stages: Vec<_> = desc
@@ -250,7 +274,9 @@ impl Pipeline {
             .collect();
         pipeline.handle = match &desc.draw {
             None => compute(gpu, pipeline.layout, &stages),
-            Some((state, attachments)) => graphics(gpu, pipeline.layout, &stages, state, attachments),
+            Some((state, attachments)) => {
+                graphics(gpu, pipeline.layout, &stages, state, attachments)
+            }
         }
         .map_err(at("create the pipeline"))?;
         gpu.name(pipeline.handle, &desc.name);
@@ -266,12 +292,16 @@ struct Modules<'a> {
 
 impl<'a> Modules<'a> {
     fn new(gpu: &'a Gpu, desc: &PipelineDesc) -> Result<Modules<'a>> {
-        let mut modules = Modules { gpu, handles: Vec::new() };
+        let mut modules = Modules {
+            gpu,
+            handles: Vec::new(),
+        };
         for stage in &desc.stages {
             let info = vk::ShaderModuleCreateInfo::default().code(&stage.spirv);
             // SAFETY: the words come from shaderc, or from a cache file whose checksum fits.
-            let handle = unsafe { gpu.device.create_shader_module(&info, None) }
-                .map_err(VulkanError::at(format!("load a shader of pass '{}'", desc.name)))?;
+            let handle = unsafe { gpu.device.create_shader_module(&info, None) }.map_err(
+                VulkanError::at(format!("load a shader of pass '{}'", desc.name)),
+            )?;
             modules.handles.push(handle);
         }
         Ok(modules)
@@ -290,9 +320,21 @@ impl Drop for Modules<'_> {
 fn pack_constants(stage: &StageDesc) -> (Vec<vk::SpecializationMapEntry>, Vec<u8>) {
     let entries = (0u32..)
         .zip(&stage.constants)
-        .map(|(i, (id, _))| vk::SpecializationMapEntry::default().constant_id(*id).offset(i * 4).size(4))
+        .map(|(i, (id, _))| {
+            vk::SpecializationMapEntry::default()
+                .constant_id(*id)
+                .offset(i * 4)
+                .size(4)
+        })
         .collect();
-    (entries, stage.constants.iter().flat_map(|(_, v)| v.to_ne_bytes()).collect())
+    (
+        entries,
+        stage
+            .constants
+            .iter()
+            .flat_map(|(_, v)| v.to_ne_bytes())
+            .collect(),
+    )
 }
 
 fn compute(
@@ -300,10 +342,17 @@ fn compute(
     layout: vk::PipelineLayout,
     stages: &[vk::PipelineShaderStageCreateInfo<'_>],
 ) -> std::result::Result<vk::Pipeline, vk::Result> {
-    let Some(stage) = stages.first() else { return Err(vk::Result::ERROR_UNKNOWN) };
-    let info = [vk::ComputePipelineCreateInfo::default().layout(layout).stage(*stage)];
+    let Some(stage) = stages.first() else {
+        return Err(vk::Result::ERROR_UNKNOWN);
+    };
+    let info = [vk::ComputePipelineCreateInfo::default()
+        .layout(layout)
+        .stage(*stage)];
     // SAFETY: layout and module are alive.
-    let made = unsafe { gpu.device.create_compute_pipelines(gpu.pipeline_cache, &info, None) };
+    let made = unsafe {
+        gpu.device
+            .create_compute_pipelines(gpu.pipeline_cache, &info, None)
+    };
     made.map(|p| p[0]).map_err(|(_, code)| code)
 }
 
@@ -317,7 +366,9 @@ fn graphics(
     let vertex = vk::PipelineVertexInputStateCreateInfo::default();
     let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(state.topology);
     let tessellation = vk::PipelineTessellationStateCreateInfo::default().patch_control_points(3);
-    let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
+    let viewport = vk::PipelineViewportStateCreateInfo::default()
+        .viewport_count(1)
+        .scissor_count(1);
     let mut conservative = vk::PipelineRasterizationConservativeStateCreateInfoEXT::default()
         .conservative_rasterization_mode(vk::ConservativeRasterizationModeEXT::OVERESTIMATE);
     let mut raster = vk::PipelineRasterizationStateCreateInfo::default()
@@ -366,7 +417,10 @@ fn graphics(
         .layout(layout)
         .push_next(&mut rendering)];
     // SAFETY: layout and modules are alive; all state outlives the call.
-    let made = unsafe { gpu.device.create_graphics_pipelines(gpu.pipeline_cache, &info, None) };
+    let made = unsafe {
+        gpu.device
+            .create_graphics_pipelines(gpu.pipeline_cache, &info, None)
+    };
     made.map(|p| p[0]).map_err(|(_, code)| code)
 }
 
@@ -379,7 +433,9 @@ impl Drop for Pipeline {
         unsafe {
             self.gpu.device.destroy_pipeline(self.handle, None);
             self.gpu.device.destroy_pipeline_layout(self.layout, None);
-            self.gpu.device.destroy_descriptor_set_layout(self.set_layout, None);
+            self.gpu
+                .device
+                .destroy_descriptor_set_layout(self.set_layout, None);
         }
     }
 }
@@ -412,7 +468,10 @@ impl DescriptorPool {
     pub fn new(gpu: &Arc<Gpu>, sets: u32, kinds: &[vk::DescriptorType]) -> Result<DescriptorPool> {
         let count = |kind: vk::DescriptorType| {
             let n = kinds.iter().filter(|k| **k == kind).count();
-            vk::DescriptorPoolSize { ty: kind, descriptor_count: u32::try_from(n).unwrap_or(u32::MAX).max(1) }
+            vk::DescriptorPoolSize {
+                ty: kind,
+                descriptor_count: u32::try_from(n).unwrap_or(u32::MAX).max(1),
+            }
         };
         let sizes = [
             count(vk::DescriptorType::UNIFORM_BUFFER),
@@ -420,11 +479,16 @@ impl DescriptorPool {
             count(vk::DescriptorType::STORAGE_IMAGE),
             count(vk::DescriptorType::COMBINED_IMAGE_SAMPLER),
         ];
-        let info = vk::DescriptorPoolCreateInfo::default().max_sets(sets.max(1)).pool_sizes(&sizes);
+        let info = vk::DescriptorPoolCreateInfo::default()
+            .max_sets(sets.max(1))
+            .pool_sizes(&sizes);
         // SAFETY: a plain creation; destroyed in `drop`.
         let handle = unsafe { gpu.device.create_descriptor_pool(&info, None) }
             .map_err(VulkanError::at("create a descriptor pool"))?;
-        Ok(DescriptorPool { gpu: gpu.clone(), handle })
+        Ok(DescriptorPool {
+            gpu: gpu.clone(),
+            handle,
+        })
     }
 
     /// A set for the pipeline with these values.
@@ -437,29 +501,33 @@ impl DescriptorPool {
         writes: &[(u32, vk::DescriptorType, DescriptorWrite<'_>)],
     ) -> Result<DescriptorSet> {
         let layouts = [pipeline.set_layout];
-        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(self.handle).set_layouts(&layouts);
+        let info = vk::DescriptorSetAllocateInfo::default()
+            .descriptor_pool(self.handle)
+            .set_layouts(&layouts);
         // SAFETY: pool and layout are alive.
         let set = unsafe { self.gpu.device.allocate_descriptor_sets(&info) }
             .map_err(VulkanError::at("allocate a descriptor set"))?[0];
         let buffers: Vec<[vk::DescriptorBufferInfo; 1]> = writes
             .iter()
             .map(|(_, _, w)| match w {
-                DescriptorWrite::Buffer(b) => {
-                    [vk::DescriptorBufferInfo::default().buffer(b.handle).range(vk::WHOLE_SIZE)]
-                }
+                DescriptorWrite::Buffer(b) => [vk::DescriptorBufferInfo::default()
+                    .buffer(b.handle)
+                    .range(vk::WHOLE_SIZE)],
                 _ => [vk::DescriptorBufferInfo::default()],
             })
             .collect();
         let images: Vec<[vk::DescriptorImageInfo; 1]> = writes
             .iter()
             .map(|(_, _, w)| match w {
-                DescriptorWrite::Sampled(view, sampler, layout) => [vk::DescriptorImageInfo::default()
-                    .image_view(view.handle)
-                    .sampler(sampler.handle)
-                    .image_layout(*layout)],
-                DescriptorWrite::Storage(view) => {
-                    [vk::DescriptorImageInfo::default().image_view(view.handle).image_layout(vk::ImageLayout::GENERAL)]
+                DescriptorWrite::Sampled(view, sampler, layout) => {
+                    [vk::DescriptorImageInfo::default()
+                        .image_view(view.handle)
+                        .sampler(sampler.handle)
+                        .image_layout(*layout)]
                 }
+                DescriptorWrite::Storage(view) => [vk::DescriptorImageInfo::default()
+                    .image_view(view.handle)
+                    .image_layout(vk::ImageLayout::GENERAL)],
                 DescriptorWrite::Buffer(_) => [vk::DescriptorImageInfo::default()],
             })
             .collect();
@@ -467,7 +535,10 @@ impl DescriptorPool {
             .iter()
             .enumerate()
             .map(|(i, (binding, kind, write))| {
-                let out = vk::WriteDescriptorSet::default().dst_set(set).dst_binding(*binding).descriptor_type(*kind);
+                let out = vk::WriteDescriptorSet::default()
+                    .dst_set(set)
+                    .dst_binding(*binding)
+                    .descriptor_type(*kind);
                 match write {
                     DescriptorWrite::Buffer(_) => out.buffer_info(&buffers[i]),
                     _ => out.image_info(&images[i]),

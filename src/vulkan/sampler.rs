@@ -42,13 +42,21 @@ impl Sampler {
             .address_mode_w(desc.address)
             .border_color(desc.border)
             .anisotropy_enable(anisotropic)
-            .max_anisotropy(if anisotropic { gpu.info.limits.max_sampler_anisotropy.min(16.0) } else { 1.0 })
+            .max_anisotropy(if anisotropic {
+                gpu.info.limits.max_sampler_anisotropy.min(16.0)
+            } else {
+                1.0
+            })
             .compare_enable(desc.compare.is_some())
             .compare_op(desc.compare.unwrap_or(vk::CompareOp::ALWAYS))
             .max_lod(vk::LOD_CLAMP_NONE);
         // SAFETY: a plain creation; destroyed in `drop`.
-        let handle = unsafe { gpu.device.create_sampler(&info, None) }.map_err(VulkanError::at("create a sampler"))?;
-        Ok(Sampler { gpu: gpu.clone(), handle })
+        let handle = unsafe { gpu.device.create_sampler(&info, None) }
+            .map_err(VulkanError::at("create a sampler"))?;
+        Ok(Sampler {
+            gpu: gpu.clone(),
+            handle,
+        })
     }
 }
 

@@ -40,15 +40,24 @@ pub(super) fn is_supported(
     if !super::gpu::has(extensions, khr::external_memory_fd::NAME) {
         return false;
     }
-    let info = vk::PhysicalDeviceExternalBufferInfo::default().usage(USAGE).handle_type(HANDLE);
+    let info = vk::PhysicalDeviceExternalBufferInfo::default()
+        .usage(USAGE)
+        .handle_type(HANDLE);
     let mut found = vk::ExternalBufferProperties::default();
     // SAFETY: `physical` comes from this instance.
     unsafe { instance.get_physical_device_external_buffer_properties(physical, &info, &mut found) };
-    found.external_memory_properties.external_memory_features.contains(Can::EXPORTABLE | Can::IMPORTABLE)
+    found
+        .external_memory_properties
+        .external_memory_features
+        .contains(Can::EXPORTABLE | Can::IMPORTABLE)
 }
 
 #[cfg(not(unix))]
-pub(super) fn is_supported(_: &ash::Instance, _: vk::PhysicalDevice, _: &[vk::ExtensionProperties]) -> bool {
+pub(super) fn is_supported(
+    _: &ash::Instance,
+    _: vk::PhysicalDevice,
+    _: &[vk::ExtensionProperties],
+) -> bool {
     false
 }
 
@@ -71,12 +80,20 @@ impl Buffer {
         // SAFETY: the handle is this device's.
         let needs = unsafe { gpu.device.get_buffer_memory_requirements(buffer.handle) };
         // SAFETY: `physical` is this device's.
-        let kinds = unsafe { gpu.instance.get_physical_device_memory_properties(gpu.physical) };
+        let kinds = unsafe {
+            gpu.instance
+                .get_physical_device_memory_properties(gpu.physical)
+        };
         let fits = |i: &u32| {
             let local = vk::MemoryPropertyFlags::DEVICE_LOCAL;
-            needs.memory_type_bits & (1 << i) != 0 && kinds.memory_types[*i as usize].property_flags.contains(local)
+            needs.memory_type_bits & (1 << i) != 0
+                && kinds.memory_types[*i as usize]
+                    .property_flags
+                    .contains(local)
         };
-        let kind = (0..kinds.memory_type_count).find(fits).ok_or_else(|| out_of_memory(name, needs.size))?;
+        let kind = (0..kinds.memory_type_count)
+            .find(fits)
+            .ok_or_else(|| out_of_memory(name, needs.size))?;
         let mut dedicated = vk::MemoryDedicatedAllocateInfo::default().buffer(buffer.handle);
         let mut export = vk::ExportMemoryAllocateInfo::default().handle_types(HANDLE);
         let info = vk::MemoryAllocateInfo::default()
@@ -85,8 +102,13 @@ impl Buffer {
             .push_next(&mut dedicated)
             .push_next(&mut export);
         // SAFETY: a plain allocation; the buffer frees it.
-        let memory = unsafe { gpu.device.allocate_memory(&info, None) }.map_err(|_| out_of_memory(name, needs.size))?;
-        buffer.memory = Memory::Handed { memory, bytes: needs.size, kind };
+        let memory = unsafe { gpu.device.allocate_memory(&info, None) }
+            .map_err(|_| out_of_memory(name, needs.size))?;
+        buffer.memory = Memory::Handed {
+            memory,
+            bytes: needs.size,
+            kind,
+        };
         // SAFETY: the memory was made for this buffer.
         unsafe { gpu.device.bind_buffer_memory(buffer.handle, memory, 0) }
             .map_err(VulkanError::at(format!("bind the memory of '{name}'")))?;
@@ -105,7 +127,9 @@ impl Buffer {
         let _ = unsafe { gpu.device.get_buffer_memory_requirements(buffer.handle) };
         let file = handed.file.into_raw_fd();
         let mut dedicated = vk::MemoryDedicatedAllocateInfo::default().buffer(buffer.handle);
-        let mut import = vk::ImportMemoryFdInfoKHR::default().handle_type(HANDLE).fd(file);
+        let mut import = vk::ImportMemoryFdInfoKHR::default()
+            .handle_type(HANDLE)
+            .fd(file);
         let info = vk::MemoryAllocateInfo::default()
             .allocation_size(handed.bytes)
             .memory_type_index(handed.kind)
@@ -117,11 +141,17 @@ impl Buffer {
             Ok(memory) => memory,
             Err(_) => {
                 // SAFETY: the import failed, so the descriptor is still this function's own.
-                drop(unsafe { <std::os::fd::OwnedFd as std::os::fd::FromRawFd>::from_raw_fd(file) });
+                drop(unsafe {
+                    <std::os::fd::OwnedFd as std::os::fd::FromRawFd>::from_raw_fd(file)
+                });
                 return Err(out_of_memory(name, handed.bytes));
             }
         };
-        buffer.memory = Memory::Handed { memory, bytes: handed.bytes, kind: handed.kind };
+        buffer.memory = Memory::Handed {
+            memory,
+            bytes: handed.bytes,
+            kind: handed.kind,
+        };
         // SAFETY: the memory was made for a buffer of this size and usage.
         unsafe { gpu.device.bind_buffer_memory(buffer.handle, memory, 0) }
             .map_err(VulkanError::at(format!("bind the memory of '{name}'")))?;
@@ -130,20 +160,41 @@ impl Buffer {
 
     fn hand(&self) -> Result<Handed> {
         use std::os::fd::{FromRawFd, OwnedFd};
-        let Memory::Handed { memory, bytes, kind } = self.memory else {
-            return Err(VulkanError::Window("a picture's memory cannot be shared".into()));
+        let Memory::Handed {
+            memory,
+            bytes,
+            kind,
+        } = self.memory
+        else {
+            return Err(VulkanError::Window(
+                "a picture's memory cannot be shared".into(),
+            ));
         };
         let loader = khr::external_memory_fd::Device::new(&self.gpu.instance, &self.gpu.device);
-        let info = vk::MemoryGetFdInfoKHR::default().memory(memory).handle_type(HANDLE);
+        let info = vk::MemoryGetFdInfoKHR::default()
+            .memory(memory)
+            .handle_type(HANDLE);
         // SAFETY: the memory was made to be exported as this; each call makes a descriptor of its own.
-        let file = unsafe { loader.get_memory_fd(&info) }.map_err(VulkanError::at("share a picture's memory"))?;
+        let file = unsafe { loader.get_memory_fd(&info) }
+            .map_err(VulkanError::at("share a picture's memory"))?;
         // SAFETY: the descriptor is new and nobody else's.
-        Ok(Handed { file: unsafe { OwnedFd::from_raw_fd(file) }, bytes, kind })
+        Ok(Handed {
+            file: unsafe { OwnedFd::from_raw_fd(file) },
+            bytes,
+            kind,
+        })
     }
 
     fn external(gpu: &Arc<Gpu>, name: &str, size: u64) -> Result<Buffer> {
         let mut external = vk::ExternalMemoryBufferCreateInfo::default().handle_types(HANDLE);
-        Buffer::with(gpu, name, size, vk::BufferCreateInfo::default().usage(USAGE).push_next(&mut external))
+        Buffer::with(
+            gpu,
+            name,
+            size,
+            vk::BufferCreateInfo::default()
+                .usage(USAGE)
+                .push_next(&mut external),
+        )
     }
 }
 
@@ -167,21 +218,40 @@ impl Buffer {
 }
 
 fn out_of_memory(name: &str, bytes: u64) -> VulkanError {
-    VulkanError::OutOfMemory { what: format!("'{name}'"), mib: bytes as f64 / f64::from(1 << 20) }
+    VulkanError::OutOfMemory {
+        what: format!("'{name}'"),
+        mib: bytes as f64 / f64::from(1 << 20),
+    }
 }
 
 impl Commands<'_> {
     /// Gives a shared buffer, written by copies, to the other device.
     pub fn hand_over(&mut self, buffer: &Buffer) {
-        let copy = (vk::PipelineStageFlags2::ALL_TRANSFER, vk::AccessFlags2::TRANSFER_WRITE);
+        let copy = (
+            vk::PipelineStageFlags2::ALL_TRANSFER,
+            vk::AccessFlags2::TRANSFER_WRITE,
+        );
         let none = (vk::PipelineStageFlags2::NONE, vk::AccessFlags2::NONE);
-        self.pass_on(buffer, (self.family(), vk::QUEUE_FAMILY_EXTERNAL), copy, none);
+        self.pass_on(
+            buffer,
+            (self.family(), vk::QUEUE_FAMILY_EXTERNAL),
+            copy,
+            none,
+        );
     }
 
     /// Takes a shared buffer that the other device has handed over, to copy from.
     pub fn take_over(&mut self, buffer: &Buffer) {
-        let copy = (vk::PipelineStageFlags2::ALL_TRANSFER, vk::AccessFlags2::TRANSFER_READ);
+        let copy = (
+            vk::PipelineStageFlags2::ALL_TRANSFER,
+            vk::AccessFlags2::TRANSFER_READ,
+        );
         let none = (vk::PipelineStageFlags2::NONE, vk::AccessFlags2::NONE);
-        self.pass_on(buffer, (vk::QUEUE_FAMILY_EXTERNAL, self.family()), none, copy);
+        self.pass_on(
+            buffer,
+            (vk::QUEUE_FAMILY_EXTERNAL, self.family()),
+            none,
+            copy,
+        );
     }
 }

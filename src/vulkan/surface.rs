@@ -25,10 +25,20 @@ impl Surface {
     pub fn new(gpu: &Arc<Gpu>, window: Arc<dyn WindowHandles>) -> Result<Surface> {
         let loader = khr::surface::Instance::new(&gpu.entry, &gpu.instance);
         let handle = create(gpu, &window)?;
-        let surface = Surface { gpu: gpu.clone(), loader, handle, window };
+        let surface = Surface {
+            gpu: gpu.clone(),
+            loader,
+            handle,
+            window,
+        };
         // SAFETY: device and surface belong to one instance.
-        let supported =
-            unsafe { surface.loader.get_physical_device_surface_support(gpu.physical, gpu.family, surface.handle) };
+        let supported = unsafe {
+            surface.loader.get_physical_device_surface_support(
+                gpu.physical,
+                gpu.family,
+                surface.handle,
+            )
+        };
         match supported {
             Ok(true) => Ok(surface),
             _ => Err(VulkanError::CannotPresent(gpu.info.name.clone())),
@@ -84,8 +94,14 @@ impl Swapchain {
         // SAFETY: device and surface belong to one instance; what is made is destroyed in `drop`.
         unsafe {
             let physical = gpu.physical;
-            let can = surface.loader.get_physical_device_surface_capabilities(physical, surface.handle).map_err(at())?;
-            let formats = surface.loader.get_physical_device_surface_formats(physical, surface.handle).map_err(at())?;
+            let can = surface
+                .loader
+                .get_physical_device_surface_capabilities(physical, surface.handle)
+                .map_err(at())?;
+            let formats = surface
+                .loader
+                .get_physical_device_surface_formats(physical, surface.handle)
+                .map_err(at())?;
             // Formats that encode show pictures as they are; without, the painter encodes, a few steps of 255 off.
             let wanted = [
                 vk::Format::B8G8R8A8_SRGB,
@@ -102,8 +118,12 @@ impl Swapchain {
             // Wayland leaves the size to the program.
             let extent = if can.current_extent.width == u32::MAX {
                 vk::Extent2D {
-                    width: size.0.clamp(can.min_image_extent.width, can.max_image_extent.width),
-                    height: size.1.clamp(can.min_image_extent.height, can.max_image_extent.height),
+                    width: size
+                        .0
+                        .clamp(can.min_image_extent.width, can.max_image_extent.width),
+                    height: size
+                        .1
+                        .clamp(can.min_image_extent.height, can.max_image_extent.height),
                 }
             } else {
                 can.current_extent
@@ -111,11 +131,18 @@ impl Swapchain {
             if extent.width == 0 || extent.height == 0 || size.0 == 0 || size.1 == 0 {
                 return Ok(None);
             }
-            let most = if can.max_image_count == 0 { u32::MAX } else { can.max_image_count };
-            let alpha = [vk::CompositeAlphaFlagsKHR::OPAQUE, vk::CompositeAlphaFlagsKHR::INHERIT]
-                .into_iter()
-                .find(|a| can.supported_composite_alpha.contains(*a))
-                .unwrap_or(vk::CompositeAlphaFlagsKHR::OPAQUE);
+            let most = if can.max_image_count == 0 {
+                u32::MAX
+            } else {
+                can.max_image_count
+            };
+            let alpha = [
+                vk::CompositeAlphaFlagsKHR::OPAQUE,
+                vk::CompositeAlphaFlagsKHR::INHERIT,
+            ]
+            .into_iter()
+            .find(|a| can.supported_composite_alpha.contains(*a))
+            .unwrap_or(vk::CompositeAlphaFlagsKHR::OPAQUE);
             let info = vk::SwapchainCreateInfoKHR::default()
                 .surface(surface.handle)
                 .min_image_count((can.min_image_count + 1).min(most))
@@ -147,8 +174,13 @@ impl Swapchain {
                     .view_type(vk::ImageViewType::TYPE_2D)
                     .format(made.format)
                     .subresource_range(WHOLE);
-                made.views.push(gpu.device.create_image_view(&info, None).map_err(at())?);
-                made.drawn.push(gpu.device.create_semaphore(&Default::default(), None).map_err(at())?);
+                made.views
+                    .push(gpu.device.create_image_view(&info, None).map_err(at())?);
+                made.drawn.push(
+                    gpu.device
+                        .create_semaphore(&Default::default(), None)
+                        .map_err(at())?,
+                );
             }
             Ok(Some(made))
         }

@@ -68,9 +68,13 @@ impl Workbench {
 
     /// Comparisons that the graph offers: each is one click.
     fn comparisons(&mut self, ui: &mut Ui) {
-        let Some(info) = self.sides[0].info.clone() else { return };
+        let Some(info) = self.sides[0].info.clone() else {
+            return;
+        };
         for compare in &info.graph.compare {
-            let button = ui.button(&compare.value.title).on_hover_text(&compare.value.help);
+            let button = ui
+                .button(&compare.value.title)
+                .on_hover_text(&compare.value.help);
             if button.clicked() {
                 let base = self.desired.sides[0].clone().unwrap_or_default();
                 let make = |values: &Entries<RawText>| {
@@ -96,7 +100,9 @@ impl Workbench {
         let mut chosen = None;
         let response = ui.menu_button(format!("experiment: {}", self.name), |ui| {
             for path in ron_files(&self.root.join("configs")) {
-                let name = path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned());
+                let name = path
+                    .file_stem()
+                    .map_or(String::new(), |s| s.to_string_lossy().into_owned());
                 ui.horizontal(|ui| {
                     if ui.button(&name).clicked() {
                         chosen = Some((path.clone(), 0));
@@ -113,14 +119,20 @@ impl Workbench {
         let Some((path, side)) = chosen else { return };
         match Experiment::read(&path) {
             Ok(experiment) if side == 0 => self.open(&experiment),
-            Ok(experiment) => self.compare_sides([self.desired.sides[0].clone(), Some(side_of(&experiment))]),
+            Ok(experiment) => {
+                self.compare_sides([self.desired.sides[0].clone(), Some(side_of(&experiment))])
+            }
             Err(errors) => self.sides[side].errors = errors,
         }
     }
 
     fn scenes_menu(&mut self, ui: &mut Ui) {
         let mut chosen = None;
-        let name = if self.no_scene { "none".into() } else { short(&self.desired.scene) };
+        let name = if self.no_scene {
+            "none".into()
+        } else {
+            short(&self.desired.scene)
+        };
         ui.menu_button(format!("scene: {name}"), |ui| {
             for (name, about) in crate::scene::builtin::list() {
                 if ui.button(name).on_hover_text(about).clicked() {
@@ -153,7 +165,11 @@ impl Workbench {
             return;
         }
         let text = egui::RichText::new(format!("warnings: {count}")).color(AMBER);
-        if ui.small_button(text).on_hover_text("Show them on the Scene tab").clicked() {
+        if ui
+            .small_button(text)
+            .on_hover_text("Show them on the Scene tab")
+            .clicked()
+        {
             self.tab = crate::workbench::tabs::surroundings::TAB;
         }
     }
@@ -162,8 +178,13 @@ impl Workbench {
         ui.horizontal(|ui| {
             if let Some((what, part)) = self.loading.clone() {
                 let lasts = self.sent_at.elapsed().as_secs();
-                ui.add(egui::ProgressBar::new(part).desired_width(200.0).text(format!("{what}, {lasts} s")));
-                ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
+                ui.add(
+                    egui::ProgressBar::new(part)
+                        .desired_width(200.0)
+                        .text(format!("{what}, {lasts} s")),
+                );
+                ui.ctx()
+                    .request_repaint_after(std::time::Duration::from_secs(1));
                 if ui.small_button("cancel").clicked() {
                     self.engine.order(Order::CancelLoading);
                 }

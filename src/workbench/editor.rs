@@ -9,7 +9,9 @@ const VARIABLES: [&str; 3] = ["CONELAB_EDITOR", "VISUAL", "EDITOR"];
 
 /// Opens a file; what is said about it.
 pub fn open(file: &Path, line: u32) -> String {
-    let named = VARIABLES.iter().find_map(|v| Some((*v, std::env::var(v).ok().filter(|t| !t.trim().is_empty())?)));
+    let named = VARIABLES
+        .iter()
+        .find_map(|v| Some((*v, std::env::var(v).ok().filter(|t| !t.trim().is_empty())?)));
     let words = match &named {
         Some((_, text)) => command(text, file, line),
         None => vec!["xdg-open".to_string(), file.to_string_lossy().into_owned()],
@@ -17,10 +19,10 @@ pub fn open(file: &Path, line: u32) -> String {
     match start(&words) {
         Ok(()) => format!("{} opens {}:{line}", words[0], file.display()),
         Err(e) => {
-            let from = named
-                .map_or(String::from("set CONELAB_EDITOR, for example to `code -g {file}:{line}`"), |(v, _)| {
-                    format!("{v} names it")
-                });
+            let from = named.map_or(
+                String::from("set CONELAB_EDITOR, for example to `code -g {file}:{line}`"),
+                |(v, _)| format!("{v} names it"),
+            );
             format!("cannot start '{}' ({e}): {from}", words[0])
         }
     }
@@ -35,14 +37,26 @@ fn command(text: &str, file: &Path, line: u32) -> Vec<String> {
         words.push("{file}".into());
     }
     // A file's name is put in last: what stands in it is no place for a line.
-    words.iter().map(|w| w.replace("{line}", &line.to_string()).replace("{file}", &file)).collect()
+    words
+        .iter()
+        .map(|w| {
+            w.replace("{line}", &line.to_string())
+                .replace("{file}", &file)
+        })
+        .collect()
 }
 
 fn start(words: &[impl AsRef<OsStr>]) -> std::io::Result<()> {
     let mut words = words.iter();
-    let program = words.next().ok_or_else(|| std::io::Error::other("no command"))?;
-    let mut child =
-        Command::new(program).args(words).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
+    let program = words
+        .next()
+        .ok_or_else(|| std::io::Error::other("no command"))?;
+    let mut child = Command::new(program)
+        .args(words)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()?;
     // Nobody waits for an editor, but one that has ended must not stay.
     std::thread::spawn(move || child.wait());
     Ok(())
@@ -56,7 +70,10 @@ mod tests {
     #[test]
     fn file_and_line_stand_where_the_command_says() {
         let file = Path::new("a b/{line}.glsl");
-        assert_eq!(command("code -g {file}:{line}", file, 7), ["code", "-g", "a b/{line}.glsl:7"]);
+        assert_eq!(
+            command("code -g {file}:{line}", file, 7),
+            ["code", "-g", "a b/{line}.glsl:7"]
+        );
         assert_eq!(command("gvim", file, 7), ["gvim", "a b/{line}.glsl"]);
     }
 }

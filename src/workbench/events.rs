@@ -11,7 +11,11 @@ use std::time::Instant;
 /// A number for a picture's red, green and blue (FNV-1a), to tell whether two are the same.
 pub fn fingerprint(rgba: &[u8]) -> String {
     let rgb = rgba.chunks_exact(4).flat_map(|p| &p[..3]);
-    format!("{:016x}", rgb.fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3)))
+    format!(
+        "{:016x}",
+        rgb.fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(*b))
+            .wrapping_mul(0x0100_0000_01b3))
+    )
 }
 
 /// A log of events.
@@ -32,7 +36,14 @@ impl Events {
     pub fn new(path: &Path) -> std::io::Result<Events> {
         let now = Instant::now();
         let file = File::create(path)?;
-        Ok(Events { file, start: now, widgets: Value::Null, place: None, nodes: HashMap::new(), sent: now })
+        Ok(Events {
+            file,
+            start: now,
+            widgets: Value::Null,
+            place: None,
+            nodes: HashMap::new(),
+            sent: now,
+        })
     }
 
     /// Writes an event; the time is added, in ms since the start.
@@ -60,14 +71,22 @@ impl Events {
     /// be written later.
     pub fn widgets(&mut self, update: Option<&accesskit::TreeUpdate>, scale: f32) -> bool {
         if let Some(update) = update {
-            self.nodes = update.nodes.iter().map(|(id, node)| (id.0, node.clone())).collect();
+            self.nodes = update
+                .nodes
+                .iter()
+                .map(|(id, node)| (id.0, node.clone()))
+                .collect();
         }
         let mut list: Vec<Value> = Vec::new();
         for node in self.nodes.values() {
             let label = node.label().or(node.value()).unwrap_or_default();
-            let Some(b) = node.bounds().filter(|_| !label.is_empty()) else { continue };
+            let Some(b) = node.bounds().filter(|_| !label.is_empty()) else {
+                continue;
+            };
             let rect = [b.x0, b.y0, b.x1, b.y1].map(|v| v.round());
-            let value = node.numeric_value().map_or_else(|| json!(node.value().unwrap_or_default()), |v| json!(v));
+            let value = node
+                .numeric_value()
+                .map_or_else(|| json!(node.value().unwrap_or_default()), |v| json!(v));
             list.push(json!({ "role": format!("{:?}", node.role()), "label": label, "value": value, "rect": rect }));
         }
         list.sort_by_key(Value::to_string);

@@ -29,33 +29,101 @@ const NONE: Modifiers = Modifiers::NONE;
 
 /// In the order in which they are explained.
 const KEYS: [(Action, KeyboardShortcut, &str); 19] = [
-    (Action::Help, KeyboardShortcut::new(NONE, Key::F1), "these keys"),
+    (
+        Action::Help,
+        KeyboardShortcut::new(NONE, Key::F1),
+        "these keys",
+    ),
     (
         Action::Undo,
         KeyboardShortcut::new(Modifiers::COMMAND, Key::Z),
         "undo the last edit: parameters, passes, lights, scene, what was opened",
     ),
-    (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), "redo"),
-    (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND, Key::Y), "redo"),
-    (Action::Open, KeyboardShortcut::new(Modifiers::COMMAND, Key::O), "open a scene, a model or an experiment"),
-    (Action::Find, KeyboardShortcut::new(Modifiers::COMMAND, Key::F), "search the parameters"),
-    (Action::Reload, KeyboardShortcut::new(NONE, Key::F5), "read graphs, shaders and the scene again"),
-    (Action::Reload, KeyboardShortcut::new(Modifiers::COMMAND, Key::R), "the same"),
+    (
+        Action::Redo,
+        KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z),
+        "redo",
+    ),
+    (
+        Action::Redo,
+        KeyboardShortcut::new(Modifiers::COMMAND, Key::Y),
+        "redo",
+    ),
+    (
+        Action::Open,
+        KeyboardShortcut::new(Modifiers::COMMAND, Key::O),
+        "open a scene, a model or an experiment",
+    ),
+    (
+        Action::Find,
+        KeyboardShortcut::new(Modifiers::COMMAND, Key::F),
+        "search the parameters",
+    ),
+    (
+        Action::Reload,
+        KeyboardShortcut::new(NONE, Key::F5),
+        "read graphs, shaders and the scene again",
+    ),
+    (
+        Action::Reload,
+        KeyboardShortcut::new(Modifiers::COMMAND, Key::R),
+        "the same",
+    ),
     (
         Action::Save,
         KeyboardShortcut::new(Modifiers::COMMAND, Key::S),
         "save the experiment, under its name on the Save tab",
     ),
-    (Action::Capture, KeyboardShortcut::new(NONE, Key::F12), "capture what is shown to captures/"),
-    (Action::Panels, KeyboardShortcut::new(NONE, Key::H), "hide and show the panels"),
-    (Action::FullScreen, KeyboardShortcut::new(NONE, Key::F11), "full screen"),
-    (Action::WholePicture, KeyboardShortcut::new(NONE, Key::Home), "the whole picture again, after zooming"),
-    (Action::Timers, KeyboardShortcut::new(NONE, Key::T), "times on the picture: stages, passes, none"),
-    (Action::Flip, KeyboardShortcut::new(NONE, Key::X), "A or B, when comparing by flipping"),
-    (Action::Unpoint, KeyboardShortcut::new(NONE, Key::Escape), "forget the point clicked on"),
-    (Action::Play, KeyboardShortcut::new(NONE, Key::Space), "play and pause time"),
-    (Action::Step, KeyboardShortcut::new(NONE, Key::Period), "one frame on"),
-    (Action::RenderDoc, KeyboardShortcut::new(NONE, Key::F10), "capture a frame with RenderDoc"),
+    (
+        Action::Capture,
+        KeyboardShortcut::new(NONE, Key::F12),
+        "capture what is shown to captures/",
+    ),
+    (
+        Action::Panels,
+        KeyboardShortcut::new(NONE, Key::H),
+        "hide and show the panels",
+    ),
+    (
+        Action::FullScreen,
+        KeyboardShortcut::new(NONE, Key::F11),
+        "full screen",
+    ),
+    (
+        Action::WholePicture,
+        KeyboardShortcut::new(NONE, Key::Home),
+        "the whole picture again, after zooming",
+    ),
+    (
+        Action::Timers,
+        KeyboardShortcut::new(NONE, Key::T),
+        "times on the picture: stages, passes, none",
+    ),
+    (
+        Action::Flip,
+        KeyboardShortcut::new(NONE, Key::X),
+        "A or B, when comparing by flipping",
+    ),
+    (
+        Action::Unpoint,
+        KeyboardShortcut::new(NONE, Key::Escape),
+        "forget the point clicked on",
+    ),
+    (
+        Action::Play,
+        KeyboardShortcut::new(NONE, Key::Space),
+        "play and pause time",
+    ),
+    (
+        Action::Step,
+        KeyboardShortcut::new(NONE, Key::Period),
+        "one frame on",
+    ),
+    (
+        Action::RenderDoc,
+        KeyboardShortcut::new(NONE, Key::F10),
+        "capture a frame with RenderDoc",
+    ),
 ];
 
 const MOUSE: [(&str, &str); 8] = [
@@ -64,15 +132,27 @@ const MOUSE: [(&str, &str); 8] = [
     ("middle drag", "move sideways"),
     ("wheel", "nearer and farther"),
     ("Ctrl wheel", "zoom into the picture; the camera stays"),
-    ("Ctrl drag", "move the picture when zoomed; a double click shows all of it"),
+    (
+        "Ctrl drag",
+        "move the picture when zoomed; a double click shows all of it",
+    ),
     ("W A S D Q E", "move; with Shift faster"),
-    ("click", "of that point, what the graph shows: the cones of a pixel, where cones are traced"),
+    (
+        "click",
+        "of that point, what the graph shows: the cones of a pixel, where cones are traced",
+    ),
 ];
 
 const BUTTONS: [(&str, &str); 5] = [
-    ("A | B", "two experiments side by side; each has its parameters, picked at the left"),
+    (
+        "A | B",
+        "two experiments side by side; each has its parameters, picked at the left",
+    ),
     ("Time", "what each pass takes, and memory"),
-    ("Chart", "error against the path-traced reference, over time; it can be gathered there"),
+    (
+        "Chart",
+        "error against the path-traced reference, over time; it can be gathered there",
+    ),
     ("Graph", "the passes; with and without one of them"),
     ("Inspect", "any texture of the graph, any slice of a volume"),
 ];
@@ -82,19 +162,28 @@ pub fn pressed(ui: &Ui, typing: bool) -> Vec<Action> {
     let allowed = |shortcut: &KeyboardShortcut| {
         !typing
             || shortcut.modifiers.any()
-            || matches!(shortcut.logical_key, Key::F1 | Key::F5 | Key::F10 | Key::F11 | Key::F12)
+            || matches!(
+                shortcut.logical_key,
+                Key::F1 | Key::F5 | Key::F10 | Key::F11 | Key::F12
+            )
     };
     let mut list: Vec<_> = KEYS.iter().filter(|k| allowed(&k.1)).collect();
     // Longer combinations first: Ctrl Z is also pressed when Ctrl Shift Z is.
     list.sort_by_key(|k| !k.1.modifiers.shift);
-    list.into_iter().filter(|k| ui.ctx().input_mut(|i| i.consume_shortcut(&k.1))).map(|k| k.0).collect()
+    list.into_iter()
+        .filter(|k| ui.ctx().input_mut(|i| i.consume_shortcut(&k.1)))
+        .map(|k| k.0)
+        .collect()
 }
 
 impl Workbench {
     /// The window of keys, over the picture and not over the parameters.
     pub(super) fn help_window(&mut self, ui: &mut Ui, place: egui::Rect) {
         let mut open = self.help;
-        let window = egui::Window::new("Help").open(&mut open).collapsible(false).resizable(false);
+        let window = egui::Window::new("Help")
+            .open(&mut open)
+            .collapsible(false)
+            .resizable(false);
         window.default_pos(place.left_top() + egui::vec2(12.0, 12.0)).show(ui.ctx(), |ui| {
             egui::Grid::new("keys").striped(true).show(ui, |ui| {
                 for (_, shortcut, text) in &KEYS {

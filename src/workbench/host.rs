@@ -17,12 +17,19 @@ impl Workbench {
 
     /// Number of A's last picture, and when it was finished.
     pub fn last_picture(&self) -> Option<(u64, Instant)> {
-        self.sides[0].picture.as_ref().map(|p| (p.frame, p.finished))
+        self.sides[0]
+            .picture
+            .as_ref()
+            .map(|p| (p.frame, p.finished))
     }
 
     /// The host has shown them.
     pub fn painted(&mut self) {
-        if let Some(picture) = self.sides[0].picture.as_ref().filter(|_| self.pixels.iter().any(|p| p.picture == 0)) {
+        if let Some(picture) = self.sides[0]
+            .picture
+            .as_ref()
+            .filter(|_| self.pixels.iter().any(|p| p.picture == 0))
+        {
             self.shown_revision = picture.revision;
         }
         if !self.pixels.is_empty() {

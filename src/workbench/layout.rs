@@ -28,7 +28,10 @@ impl Workbench {
             self.panel_side = 0;
         }
         let number = self.panel_side;
-        let info = self.sides[number].info.clone().or(self.sides[0].info.clone());
+        let info = self.sides[number]
+            .info
+            .clone()
+            .or(self.sides[0].info.clone());
         let Some(info) = info else {
             ui.weak(self.waiting_text());
             return;
@@ -37,7 +40,8 @@ impl Workbench {
         if let Some(side) = &mut self.desired.sides[number] {
             let found = (self.effects.of(number), self.effects.is_old(number));
             let before = side.graph.clone();
-            self.panel.show(ui, &info.graph, side, other.as_ref(), found);
+            self.panel
+                .show(ui, &info.graph, side, other.as_ref(), found);
             if side.graph != before {
                 let side = side.clone();
                 self.desired.sides[number] = Some(self.with_graph(&side, &side.graph));
@@ -51,7 +55,10 @@ impl Workbench {
             ui.spacing_mut().item_spacing.x = 1.0;
             ui.spacing_mut().button_padding.x = 3.0;
             for tab in TABS {
-                if ui.selectable_label(self.tab.is(tab), egui::RichText::new(tab.title).size(12.0)).clicked() {
+                if ui
+                    .selectable_label(self.tab.is(tab), egui::RichText::new(tab.title).size(12.0))
+                    .clicked()
+                {
                     self.tab = tab;
                 }
             }
@@ -82,14 +89,17 @@ impl Workbench {
                 }
                 help::Action::Timers => self.view.timers = self.view.timers.next(),
                 help::Action::Flip => self.view.flipped = !self.view.flipped,
-                help::Action::Unpoint if std::mem::take(&mut self.panel.typing) => self.panel.search.clear(),
+                help::Action::Unpoint if std::mem::take(&mut self.panel.typing) => {
+                    self.panel.search.clear()
+                }
                 help::Action::Unpoint => self.point_at(None),
                 help::Action::Save => self.save(false),
                 help::Action::Capture => self.capture(),
                 help::Action::Panels => self.hidden = !self.hidden,
                 help::Action::FullScreen => {
                     self.full_screen = !self.full_screen;
-                    ui.ctx().send_viewport_cmd(egui::ViewportCommand::Fullscreen(self.full_screen));
+                    ui.ctx()
+                        .send_viewport_cmd(egui::ViewportCommand::Fullscreen(self.full_screen));
                 }
                 help::Action::WholePicture => self.view.zoom = zoom::Zoom::default(),
                 help::Action::RenderDoc => self.engine.order(Order::RenderDoc),
@@ -101,8 +111,16 @@ impl Workbench {
 /// A press of the mouse elsewhere takes the keys away from a text field: a drag on a slider would leave them there, and
 /// with them what Ctrl Z means.
 pub(super) fn release_focus(ui: &Ui) {
-    let Some(focused) = ui.ctx().memory(egui::Memory::focused) else { return };
-    let pressed = ui.input(|i| if i.pointer.any_pressed() { i.pointer.interact_pos() } else { None });
+    let Some(focused) = ui.ctx().memory(egui::Memory::focused) else {
+        return;
+    };
+    let pressed = ui.input(|i| {
+        if i.pointer.any_pressed() {
+            i.pointer.interact_pos()
+        } else {
+            None
+        }
+    });
     let rect = ui.ctx().read_response(focused).map(|r| r.rect);
     if let (Some(at), Some(rect)) = (pressed, rect)
         && !rect.contains(at)

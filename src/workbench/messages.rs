@@ -10,7 +10,12 @@ const RESTART: &str = "Restart device";
 
 impl Workbench {
     fn has_messages(&self) -> bool {
-        self.trouble.is_some() || self.warned || self.sides.iter().any(|s| !s.errors.is_empty() || !s.checks.is_empty())
+        self.trouble.is_some()
+            || self.warned
+            || self
+                .sides
+                .iter()
+                .any(|s| !s.errors.is_empty() || !s.checks.is_empty())
     }
 
     /// The messages over the lower edge of `place`: the picture under them keeps its place and size.
@@ -18,12 +23,16 @@ impl Workbench {
         if !self.has_messages() {
             return;
         }
-        let area = egui::Area::new("messages".into()).pivot(Align2::LEFT_BOTTOM).fixed_pos(place.left_bottom());
+        let area = egui::Area::new("messages".into())
+            .pivot(Align2::LEFT_BOTTOM)
+            .fixed_pos(place.left_bottom());
         area.constrain(false).show(ui.ctx(), |ui| {
             egui::Frame::side_top_panel(ui.style()).show(ui, |ui| {
                 ui.set_width((place.width() - 16.0).max(40.0));
                 let height = 160.0_f32.min(0.4 * ui.ctx().content_rect().height());
-                let scroll = egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]);
+                let scroll = egui::ScrollArea::vertical()
+                    .max_height(height)
+                    .auto_shrink([false, true]);
                 scroll.show(ui, |ui| self.message_rows(ui));
             });
         });
@@ -35,9 +44,17 @@ impl Workbench {
             if !side.errors.is_empty() {
                 let count = side.errors.len();
                 ui.horizontal_wrapped(|ui| {
-                    ui.colored_label(RED, format!("{name} shows the last good picture: {count} to mend in the files"));
-                    if ui.small_button("copy").on_hover_text("All of these messages").clicked() {
-                        let texts: Vec<String> = side.errors.iter().map(ToString::to_string).collect();
+                    ui.colored_label(
+                        RED,
+                        format!("{name} shows the last good picture: {count} to mend in the files"),
+                    );
+                    if ui
+                        .small_button("copy")
+                        .on_hover_text("All of these messages")
+                        .clicked()
+                    {
+                        let texts: Vec<String> =
+                            side.errors.iter().map(ToString::to_string).collect();
                         ui.ctx().copy_text(texts.join("\n"));
                     }
                 });
@@ -52,7 +69,11 @@ impl Workbench {
             }
         }
         if let Some((file, line)) = open {
-            let file = if file.is_absolute() || file.exists() { file } else { self.root.join(file) };
+            let file = if file.is_absolute() || file.exists() {
+                file
+            } else {
+                self.root.join(file)
+            };
             self.status = editor::open(&file, line);
             self.event("editor", serde_json::json!({ "text": self.status }));
         }
@@ -65,10 +86,15 @@ impl Workbench {
                     n => format!(" (and {} more on the Scene tab)", n - 1),
                 };
                 ui.colored_label(AMBER, format!("scene: {first}{more}"));
-                self.warned = !ui.small_button("dismiss").on_hover_text("It stays on the Scene tab").clicked();
+                self.warned = !ui
+                    .small_button("dismiss")
+                    .on_hover_text("It stays on the Scene tab")
+                    .clicked();
             });
         }
-        let Some(trouble) = self.trouble.clone() else { return };
+        let Some(trouble) = self.trouble.clone() else {
+            return;
+        };
         ui.horizontal_wrapped(|ui| {
             ui.colored_label(AMBER, &trouble);
             let mut done = ui.small_button("dismiss").clicked();
@@ -96,12 +122,21 @@ fn diagnostic(ui: &mut Ui, d: &Diagnostic) -> bool {
             at.push_str(&format!(":{}", place.column));
         }
     }
-    let colour = if d.severity == Severity::Error { RED } else { AMBER };
-    let text = RichText::new(format!("{at}: {}", d.message)).color(colour).monospace();
+    let colour = if d.severity == Severity::Error {
+        RED
+    } else {
+        AMBER
+    };
+    let text = RichText::new(format!("{at}: {}", d.message))
+        .color(colour)
+        .monospace();
     let mut clicked = false;
     if place.line > 0 {
         let label = ui.add(egui::Label::new(text).sense(egui::Sense::click()));
-        clicked = label.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text("Opens the editor").clicked();
+        clicked = label
+            .on_hover_cursor(egui::CursorIcon::PointingHand)
+            .on_hover_text("Opens the editor")
+            .clicked();
     } else {
         ui.label(text);
     }

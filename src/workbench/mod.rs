@@ -66,8 +66,16 @@ impl NewPixels {
     /// As the painter takes them.
     pub fn source(&self) -> Option<Pixels<'_>> {
         let bytes = || self.bytes.as_ref().map(|b| PixelSource::Bytes(b));
-        let source = self.shared.as_ref().map(PixelSource::Shared).or_else(bytes)?;
-        Some(Pixels { picture: self.picture, size: self.size, source })
+        let source = self
+            .shared
+            .as_ref()
+            .map(PixelSource::Shared)
+            .or_else(bytes)?;
+        Some(Pixels {
+            picture: self.picture,
+            size: self.size,
+            source,
+        })
     }
 }
 
@@ -91,7 +99,9 @@ struct Side {
 impl Side {
     /// Whether its picture is of an earlier request.
     fn behind(&self, sent: u64) -> bool {
-        self.picture.as_ref().is_some_and(|p| p.preview || p.request < sent)
+        self.picture
+            .as_ref()
+            .is_some_and(|p| p.preview || p.request < sent)
     }
 }
 
@@ -191,7 +201,8 @@ impl Workbench {
     pub fn new(options: Options, wake: Arc<dyn Fn() + Send + Sync>) -> Result<Workbench, LabError> {
         let experiment = Experiment::read(&options.experiment).map_err(LabError::Input)?;
         let events = options.events.as_deref().map(Events::new).transpose();
-        let events = events.map_err(|e| LabError::Request(format!("cannot write the log of events: {e}")))?;
+        let events = events
+            .map_err(|e| LabError::Request(format!("cannot write the log of events: {e}")))?;
         let root = options.home.root.clone();
         let (home, gpu) = (options.home, options.gpu);
         let engine = Engine::start(home.clone(), gpu.clone(), wake.clone());
@@ -202,7 +213,11 @@ impl Workbench {
             environment: picture_of(&experiment),
             size: options.size.unwrap_or((0, 0)),
             redo: options.redo,
-            clock: request::Clock { at: experiment.time, jumps: 1, ..request::Clock::default() },
+            clock: request::Clock {
+                at: experiment.time,
+                jumps: 1,
+                ..request::Clock::default()
+            },
             ..RenderRequest::default()
         };
         watch.experiment(&options.experiment);
@@ -294,12 +309,24 @@ impl Workbench {
 
     /// Sets the parameter that the graph names for clicks.
     fn point_at(&mut self, at: Option<Vec2>) {
-        let Some(info) = self.sides[0].info.clone() else { return };
-        let Some(name) = &info.graph.pointer else { return };
-        let Some(param) = info.graph.params.param(name) else { return };
-        let at = at.map_or([-1.0; 2], |p| [f64::from(p.x.floor()), f64::from(p.y.floor())]);
+        let Some(info) = self.sides[0].info.clone() else {
+            return;
+        };
+        let Some(name) = &info.graph.pointer else {
+            return;
+        };
+        let Some(param) = info.graph.params.param(name) else {
+            return;
+        };
+        let at = at.map_or([-1.0; 2], |p| {
+            [f64::from(p.x.floor()), f64::from(p.y.floor())]
+        });
         for side in self.desired.sides.iter_mut().flatten() {
-            edit::set(side, param, &crate::graph::param::Value::Vector(at.to_vec()));
+            edit::set(
+                side,
+                param,
+                &crate::graph::param::Value::Vector(at.to_vec()),
+            );
         }
     }
 
@@ -378,7 +405,8 @@ impl Workbench {
         }
         self.compare();
         // Comparisons are made, and events say what pictures hold, in main memory.
-        let maps = matches!(self.view.mode, Mode::Difference | Mode::Perceived) && self.desired.sides[1].is_some();
+        let maps = matches!(self.view.mode, Mode::Difference | Mode::Perceived)
+            && self.desired.sides[1].is_some();
         self.desired.bytes = maps || self.events.is_some();
         self.find_effects(ui);
         self.send_request();
@@ -387,7 +415,9 @@ impl Workbench {
 
     /// The picture has the size of the viewport, once that has stood still for a moment.
     fn fit_size(&mut self, ui: &Ui) {
-        let size = self.fixed_size.unwrap_or((self.area[0].max(1), self.area[1].max(1)));
+        let size = self
+            .fixed_size
+            .unwrap_or((self.area[0].max(1), self.area[1].max(1)));
         if size == self.desired.size || size.0 < 2 || size.1 < 2 {
             self.resize_since = None;
             return;
@@ -413,13 +443,17 @@ impl Workbench {
 
 fn ron_files(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut list: Vec<PathBuf> =
-        entries.map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "ron") && p.is_file()).collect();
+    let mut list: Vec<PathBuf> = entries
+        .map(|e| e.path())
+        .filter(|p| p.extension().is_some_and(|e| e == "ron") && p.is_file())
+        .collect();
     list.sort();
     list
 }
 
 /// A path's stem; a name as it is.
 fn short(spec: &str) -> String {
-    Path::new(spec).file_stem().map_or_else(|| spec.to_string(), |s| s.to_string_lossy().into_owned())
+    Path::new(spec)
+        .file_stem()
+        .map_or_else(|| spec.to_string(), |s| s.to_string_lossy().into_owned())
 }

@@ -27,7 +27,10 @@ impl Models {
             .add_file_filter_extensions(OPENED, ENDINGS.to_vec())
             .default_file_filter(OPENED)
             .default_size([620.0, 360.0]);
-        Models { found: None, dialog }
+        Models {
+            found: None,
+            dialog,
+        }
     }
 
     /// Shows the models; the one that was chosen.
@@ -42,18 +45,26 @@ impl Models {
         });
         if !found.is_empty() {
             ui.weak("models in CONELAB_SCENES");
-            egui::ScrollArea::vertical().max_height(200.0).show(ui, |ui| {
-                for (path, bytes) in found {
-                    let name = path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
-                    ui.horizontal(|ui| {
-                        if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
-                            chosen = Some(path.to_string_lossy().into_owned());
-                        }
-                        ui.weak(format!("{:.1} MB", *bytes as f64 / 1e6))
-                            .on_hover_text("The file alone, without its pictures");
-                    });
-                }
-            });
+            egui::ScrollArea::vertical()
+                .max_height(200.0)
+                .show(ui, |ui| {
+                    for (path, bytes) in found {
+                        let name = path
+                            .file_name()
+                            .map_or(String::new(), |n| n.to_string_lossy().into_owned());
+                        ui.horizontal(|ui| {
+                            if ui
+                                .button(name)
+                                .on_hover_text(path.display().to_string())
+                                .clicked()
+                            {
+                                chosen = Some(path.to_string_lossy().into_owned());
+                            }
+                            ui.weak(format!("{:.1} MB", *bytes as f64 / 1e6))
+                                .on_hover_text("The file alone, without its pictures");
+                        });
+                    }
+                });
         }
         if ui
             .button("open file...")

@@ -27,15 +27,24 @@ impl Workbench {
 
     /// The open experiment's file was edited: its values take the place of those here.
     fn experiment_changed(&mut self, path: &Path) {
-        if path.file_stem().is_none_or(|s| s.to_string_lossy() != self.name.as_str()) {
+        if path
+            .file_stem()
+            .is_none_or(|s| s.to_string_lossy() != self.name.as_str())
+        {
             return;
         }
-        let own = self.written.take().is_some_and(|w| w.file_name() == path.file_name());
+        let own = self
+            .written
+            .take()
+            .is_some_and(|w| w.file_name() == path.file_name());
         match Experiment::read(path) {
             Ok(_) if own => {}
             Ok(experiment) => {
                 self.sides[0].errors.clear();
-                let pointer = self.sides[0].info.as_ref().and_then(|i| i.graph.pointer.as_deref());
+                let pointer = self.sides[0]
+                    .info
+                    .as_ref()
+                    .and_then(|i| i.graph.pointer.as_deref());
                 let shown = self.desired.sides[0].clone().unwrap_or_default();
                 if sorted(side_of(&experiment)) != sorted(save::without_pointer(&shown, pointer))
                     || experiment.scene != self.desired.scene
@@ -55,7 +64,9 @@ impl Workbench {
         self.history.opens();
         self.name.clone_from(&experiment.name);
         self.desired.sides[0] = Some(side_of(experiment));
-        if self.desired.scene == experiment.scene && self.desired.environment == picture_of(experiment) {
+        if self.desired.scene == experiment.scene
+            && self.desired.environment == picture_of(experiment)
+        {
             if let Some(scene) = &self.scene {
                 self.desired.camera = viewpoint_of(experiment, scene).ok().map(|v| v.camera);
                 self.desired.lights = save::lights(experiment, scene).unwrap_or_default();
@@ -76,20 +87,28 @@ impl Workbench {
         let asked = (&self.desired.scene, &self.desired.environment);
         match &self.loaded_scene {
             Some(loaded) if asked == (&loaded.0, &loaded.1) => None,
-            _ if self.no_scene => Some(format!("scene '{}' could not be loaded; choose another one", asked.0)),
+            _ if self.no_scene => Some(format!(
+                "scene '{}' could not be loaded; choose another one",
+                asked.0
+            )),
             _ => Some(format!("scene '{}' is still being loaded", asked.0)),
         }
     }
 
     /// The length of [`Workbench::scene_warnings`], without their texts: every frame of the window shows it.
     pub(super) fn scene_warning_count(&self) -> usize {
-        self.scene.as_ref().map_or(0, |s| s.warnings.len() + usize::from(s.triangle_count() == 0))
+        self.scene.as_ref().map_or(0, |s| {
+            s.warnings.len() + usize::from(s.triangle_count() == 0)
+        })
     }
 
     /// What is to be known about the loaded scene.
     pub(super) fn scene_warnings(&self) -> Vec<String> {
-        let Some(scene) = &self.scene else { return Vec::new() };
-        let empty = (scene.triangle_count() == 0).then(|| format!("scene '{}' has no triangles", scene.name));
+        let Some(scene) = &self.scene else {
+            return Vec::new();
+        };
+        let empty = (scene.triangle_count() == 0)
+            .then(|| format!("scene '{}' has no triangles", scene.name));
         scene.warnings.iter().cloned().chain(empty).collect()
     }
 
@@ -125,7 +144,10 @@ impl Workbench {
     /// The present experiment, as side A shows it.
     pub(super) fn bare(&self) -> Experiment {
         let side = self.desired.sides[0].clone().unwrap_or_default();
-        Experiment { name: self.name.clone(), ..self.desired.experiment(&side) }
+        Experiment {
+            name: self.name.clone(),
+            ..self.desired.experiment(&side)
+        }
     }
 }
 
@@ -137,13 +159,21 @@ fn sorted(mut side: SideRequest) -> SideRequest {
 
 /// The file of the picture that an experiment gives the sky.
 pub(super) fn picture_of(experiment: &Experiment) -> String {
-    experiment.environment.as_ref().and_then(|e| e.value.file.clone()).unwrap_or_default()
+    experiment
+        .environment
+        .as_ref()
+        .and_then(|e| e.value.file.clone())
+        .unwrap_or_default()
 }
 
 /// A side that shows an experiment.
 pub(super) fn side_of(experiment: &Experiment) -> SideRequest {
     SideRequest {
         graph: experiment.graph.clone(),
-        params: experiment.params.iter().map(|(name, value)| (name.value.clone(), value.clone())).collect(),
+        params: experiment
+            .params
+            .iter()
+            .map(|(name, value)| (name.value.clone(), value.clone()))
+            .collect(),
     }
 }

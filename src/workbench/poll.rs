@@ -33,7 +33,10 @@ impl Workbench {
                 });
                 let (mean, max, differing) = (map.mean, map.max, map.differing);
                 let name = MODES.iter().find(|m| m.0 == mode).map_or("", |m| m.1);
-                self.event("compared", json!({ "mode": name, "mean": mean, "max": max, "differing": differing }));
+                self.event(
+                    "compared",
+                    json!({ "mode": name, "mean": mean, "max": max, "differing": differing }),
+                );
                 self.comparison = Some((mode, map));
             }
         }
@@ -53,15 +56,26 @@ impl Workbench {
             Err(wait) => wait,
         };
         // An engine that stands still wakes nobody.
-        if self.engine.works() { Some(wait.map_or(LOOK, |w| w.min(LOOK))) } else { wait }
+        if self.engine.works() {
+            Some(wait.map_or(LOOK, |w| w.min(LOOK)))
+        } else {
+            wait
+        }
     }
 
     /// Leaves an engine that is no longer there to itself, and starts another.
     fn replace_engine(&mut self, why: &str) {
         let failed = (self.sent_number, self.sent.clone());
-        self.engine = Engine::replace(self.home.clone(), self.gpu.clone(), self.wake.clone(), failed);
+        self.engine = Engine::replace(
+            self.home.clone(),
+            self.gpu.clone(),
+            self.wake.clone(),
+            failed,
+        );
         (self.loading, self.device) = (None, None);
-        let text = format!("{why}. Another engine was started: change a shader or a value, or press Restart device");
+        let text = format!(
+            "{why}. Another engine was started: change a shader or a value, or press Restart device"
+        );
         self.event("engine replaced", json!({ "text": text }));
         self.trouble = Some(text);
     }
@@ -69,14 +83,29 @@ impl Workbench {
     fn report(&mut self, report: Report) {
         match report {
             Report::Device(device) => {
-                self.event("device", json!({ "name": device.name, "driver": device.driver }));
+                self.event(
+                    "device",
+                    json!({ "name": device.name, "driver": device.driver }),
+                );
                 self.device = Some(device);
                 self.chart.restarted();
                 self.trouble = None;
             }
-            Report::Built { side, info, change, ms, revision, objects } => {
-                let Change { kept, built, resized } = change;
-                self.status = format!("kept {kept}, rebuilt {built}, resized {resized}, {ms:.0} ms");
+            Report::Built {
+                side,
+                info,
+                change,
+                ms,
+                revision,
+                objects,
+            } => {
+                let Change {
+                    kept,
+                    built,
+                    resized,
+                } = change;
+                self.status =
+                    format!("kept {kept}, rebuilt {built}, resized {resized}, {ms:.0} ms");
                 self.event(
                     "built",
                     json!({ "side": side, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
@@ -86,9 +115,16 @@ impl Workbench {
                 self.mended(side);
                 self.sides[side].info = Some(info);
             }
-            Report::Failed { side, diagnostics, revision } => {
+            Report::Failed {
+                side,
+                diagnostics,
+                revision,
+            } => {
                 let texts: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
-                self.event("failed", json!({ "side": side, "errors": texts, "revision": revision }));
+                self.event(
+                    "failed",
+                    json!({ "side": side, "errors": texts, "revision": revision }),
+                );
                 self.sides[side].errors = diagnostics;
             }
             Report::Set { side, .. } => {
@@ -97,12 +133,23 @@ impl Workbench {
             Report::Restarted => self.times.restarted(),
             Report::Picture(picture) => self.picture_came(picture),
             Report::Pixels { side, frame, bytes } => {
-                let Some(picture) = self.sides[side].picture.as_mut().filter(|p| p.frame == frame) else { return };
+                let Some(picture) = self.sides[side]
+                    .picture
+                    .as_mut()
+                    .filter(|p| p.frame == frame)
+                else {
+                    return;
+                };
                 picture.bytes = Some(bytes.clone());
                 // A window that did not keep up has none of this frame.
                 if picture.shared.is_none() {
                     let size = picture.size;
-                    self.show(NewPixels { picture: side, size, bytes: Some(bytes), shared: None });
+                    self.show(NewPixels {
+                        picture: side,
+                        size,
+                        bytes: Some(bytes),
+                        shared: None,
+                    });
                 }
             }
             Report::Loading(what, part) => self.loading = Some((what, part)),
@@ -110,7 +157,10 @@ impl Workbench {
             Report::Loaded(scene) => self.loaded(scene),
             Report::LoadFailed(why) => {
                 self.loading = None;
-                self.event("load failed", json!({ "why": why, "scene": self.desired.scene }));
+                self.event(
+                    "load failed",
+                    json!({ "why": why, "scene": self.desired.scene }),
+                );
                 self.no_scene = self.scene.is_none();
                 self.trouble = Some(why);
                 self.return_to_scene();
@@ -119,7 +169,9 @@ impl Workbench {
             Report::Texels(target, texels) => {
                 let info = self.sides[target.side.min(1)].info.as_ref();
                 let number = info.and_then(|i| i.graph.texture(&target.texture));
-                let volume = info.zip(number).is_some_and(|(i, n)| i.textures.get(n).is_some_and(|t| t.volume));
+                let volume = info
+                    .zip(number)
+                    .is_some_and(|(i, n)| i.textures.get(n).is_some_and(|t| t.volume));
                 self.inspector.note(target, *texels, volume, &self.wake);
             }
             Report::Table(number, table, bytes) => self.tables.note(number, table, bytes),
@@ -174,7 +226,12 @@ impl Workbench {
         self.chart.note(&picture);
         let number = picture.side;
         let (bytes, shared) = (picture.bytes.clone(), picture.shared.clone());
-        self.show(NewPixels { picture: number, size: picture.size, bytes, shared });
+        self.show(NewPixels {
+            picture: number,
+            size: picture.size,
+            bytes,
+            shared,
+        });
         if self.events.is_some() {
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
             let fields = json!({ "side": number, "preview": picture.preview, "frame": picture.frame,
@@ -193,9 +250,13 @@ impl Workbench {
         self.trouble = None;
         self.loaded_scene = Some((self.desired.scene.clone(), self.desired.environment.clone()));
         (self.before_loading, self.no_scene) = (None, false);
-        let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.desired.camera.is_some();
+        let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name)
+            && self.desired.camera.is_some();
         if !std::mem::take(&mut self.returning) && (!same || self.experiment.is_some()) {
-            let fallback = Experiment { camera: CameraChoice::Named("default".into()), ..self.bare() };
+            let fallback = Experiment {
+                camera: CameraChoice::Named("default".into()),
+                ..self.bare()
+            };
             let experiment = self.experiment.take().unwrap_or(fallback);
             match save::lights(&experiment, &scene) {
                 Ok(lights) => self.desired.lights = lights,
@@ -215,7 +276,10 @@ impl Workbench {
         self.scene = Some(scene);
         let warnings = self.scene_warnings();
         self.warned = !warnings.is_empty();
-        self.event("loaded", json!({ "scene": name, "triangles": triangles, "warnings": warnings }));
+        self.event(
+            "loaded",
+            json!({ "scene": name, "triangles": triangles, "warnings": warnings }),
+        );
         self.send_request();
     }
 }

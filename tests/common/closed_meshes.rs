@@ -6,10 +6,26 @@ use glam::{Mat4, Quat, Vec3};
 /// A scene of one mesh.
 pub fn placed(mesh: Mesh, materials: Vec<Material>, keyframes: Vec<Keyframe>) -> Scene {
     let track = Track::rigid(&keyframes, false).into();
-    let movers = vec![Mover { parent: None, placed: Mat4::IDENTITY, track }];
+    let movers = vec![Mover {
+        parent: None,
+        placed: Mat4::IDENTITY,
+        track,
+    }];
     let mover = (!keyframes.is_empty()).then_some(0);
-    let instances = vec![Instance { name: "mesh".into(), mesh: 0, transform: Mat4::IDENTITY, mover }];
-    Scene { name: "mesh".into(), meshes: vec![mesh], materials, instances, movers, ..Scene::default() }
+    let instances = vec![Instance {
+        name: "mesh".into(),
+        mesh: 0,
+        transform: Mat4::IDENTITY,
+        mover,
+    }];
+    Scene {
+        name: "mesh".into(),
+        meshes: vec![mesh],
+        materials,
+        instances,
+        movers,
+        ..Scene::default()
+    }
 }
 
 /// A closed surface over a torus of u and v: `point` has the period 1 in both.
@@ -39,7 +55,11 @@ pub fn cube(n: u32, round: f32) -> Mesh {
             p[axis] = sign;
             p[(axis + 1) % 3] = 2.0 * i as f32 / n as f32 - 1.0;
             p[(axis + 2) % 3] = 2.0 * j as f32 / n as f32 - 1.0;
-            push(&mut mesh, (p * 0.45).lerp(p.normalize() * 0.7, round), p.normalize());
+            push(
+                &mut mesh,
+                (p * 0.45).lerp(p.normalize() * 0.7, round),
+                p.normalize(),
+            );
             if i < n && j < n {
                 let at = |i: u32, j: u32| first + i * (n + 1) + j;
                 mesh.indices.extend([
@@ -57,11 +77,19 @@ pub fn cube(n: u32, round: f32) -> Mesh {
 }
 
 fn push(mesh: &mut Mesh, position: Vec3, normal: Vec3) {
-    mesh.vertices.push(Vertex { position: position.into(), normal: normal.into(), ..Vertex::default() });
+    mesh.vertices.push(Vertex {
+        position: position.into(),
+        normal: normal.into(),
+        ..Vertex::default()
+    });
 }
 
 fn whole(mut mesh: Mesh) -> Mesh {
-    mesh.submeshes = vec![Submesh { first_index: 0, index_count: mesh.indices.len() as u32, material: 0 }];
+    mesh.submeshes = vec![Submesh {
+        first_index: 0,
+        index_count: mesh.indices.len() as u32,
+        material: 0,
+    }];
     mesh
 }
 
@@ -69,7 +97,9 @@ fn whole(mut mesh: Mesh) -> Mesh {
 pub fn poses(count: usize) -> Vec<Keyframe> {
     let mut state = 12345u64;
     let mut number = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         (state >> 40) as f32 / (1u64 << 24) as f32 * 2.0 - 1.0
     };
     let pose = |i| Keyframe {

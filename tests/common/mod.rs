@@ -33,7 +33,10 @@ pub fn on_software() -> bool {
 
 /// A number that the environment gives, as for longer runs of what is drawn at random.
 pub fn number(name: &str) -> Option<usize> {
-    std::env::var(name).ok().map(|text| text.parse().unwrap_or_else(|_| panic!("{name}: '{text}' is no number")))
+    std::env::var(name).ok().map(|text| {
+        text.parse()
+            .unwrap_or_else(|_| panic!("{name}: '{text}' is no number"))
+    })
 }
 
 /// Compiled shaders and pipelines, kept between the tests of one build.
@@ -44,8 +47,13 @@ pub fn cache() -> PathBuf {
 /// The program, on the folders of `home`, with a software device and the validation layer.
 pub fn conelab(home: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_conelab"));
-    command.env("CONELAB_HOME", home).env("CONELAB_CACHE", cache()).current_dir(home);
-    command.env("CONELAB_DEVICE", device()).env("CONELAB_VALIDATION", "true");
+    command
+        .env("CONELAB_HOME", home)
+        .env("CONELAB_CACHE", cache())
+        .current_dir(home);
+    command
+        .env("CONELAB_DEVICE", device())
+        .env("CONELAB_VALIDATION", "true");
     command
 }
 
@@ -64,19 +72,35 @@ pub fn succeeds(command: &mut Command) -> String {
 pub fn fails(command: &mut Command) -> String {
     let output = command.output().unwrap();
     let (_, out, err) = text(&output);
-    assert_eq!(output.status.code(), Some(1), "{command:?} ended with {}\n{out}{err}", output.status);
+    assert_eq!(
+        output.status.code(),
+        Some(1),
+        "{command:?} ended with {}\n{out}{err}",
+        output.status
+    );
     err
 }
 
 fn text(output: &Output) -> (bool, String, String) {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (output.status.success(), text(&output.stdout), text(&output.stderr))
+    (
+        output.status.success(),
+        text(&output.stdout),
+        text(&output.stderr),
+    )
 }
 
 /// A software device with the validation layer.
 pub fn lab(home: &Path) -> Lab {
-    let home = Workspace { root: home.to_path_buf(), cache: Some(cache()) };
-    let options = GpuOptions { device: Some(device()), validation: true, ..GpuOptions::default() };
+    let home = Workspace {
+        root: home.to_path_buf(),
+        cache: Some(cache()),
+    };
+    let options = GpuOptions {
+        device: Some(device()),
+        validation: true,
+        ..GpuOptions::default()
+    };
     Lab::open(home, options).unwrap()
 }
 
@@ -88,16 +112,39 @@ pub fn scene(name: &str) -> Arc<Scene> {
 /// The plainest of the repository's graphs that has all of these parameters.
 #[track_caller]
 pub fn graph_with(params: &[(&str, &str)]) -> String {
-    let home = Workspace { root: root().to_path_buf(), cache: None };
+    let home = Workspace {
+        root: root().to_path_buf(),
+        cache: None,
+    };
     let has_all = |name: &String| {
         let graph = conelab::graph::load::load(&home.graph_path(name), &home.folders()).unwrap();
-        params.iter().all(|(name, _)| graph.params.index(name).is_some())
+        params
+            .iter()
+            .all(|(name, _)| graph.params.index(name).is_some())
     };
-    let own = |name: &str| root().join("tests/common").join(name).to_string_lossy().into_owned();
+    let own = |name: &str| {
+        root()
+            .join("tests/common")
+            .join(name)
+            .to_string_lossy()
+            .into_owned()
+    };
     let (base, both) = (own("base_color.ron"), own("warps_temporal.ron"));
-    let graphs = ["rays.ron", "cones.ron", "warps.ron", "temporal.ron", "thesis.ron", "reference.ron", &base, &both]
-        .map(String::from);
-    graphs.into_iter().find(has_all).unwrap_or_else(|| panic!("no graph has all of {params:?}"))
+    let graphs = [
+        "rays.ron",
+        "cones.ron",
+        "warps.ron",
+        "temporal.ron",
+        "thesis.ron",
+        "reference.ron",
+        &base,
+        &both,
+    ]
+    .map(String::from);
+    graphs
+        .into_iter()
+        .find(has_all)
+        .unwrap_or_else(|| panic!("no graph has all of {params:?}"))
 }
 
 /// An experiment of the repository's method: scene, size and what differs from the defaults.
@@ -107,7 +154,10 @@ pub fn experiment(scene: &str, size: (u32, u32), params: &[(&str, &str)]) -> Exp
     experiment.scene = scene.into();
     experiment.size = size;
     for (name, value) in params {
-        let name = conelab::diagnostics::Loc { value: (*name).to_string(), at: Default::default() };
+        let name = conelab::diagnostics::Loc {
+            value: (*name).to_string(),
+            at: Default::default(),
+        };
         experiment.params.push((name, (*value).to_string()));
     }
     experiment
@@ -138,19 +188,29 @@ pub fn floats(session: &mut Session, name: &str, mip: u32) -> Vec<[f32; 4]> {
 
 /// Mean of the red, green and blue of some texels.
 pub fn mean(texels: &[[f32; 4]]) -> f64 {
-    texels.iter().flat_map(|t| &t[..3]).map(|v| f64::from(*v)).sum::<f64>() / (3 * texels.len()) as f64
+    texels
+        .iter()
+        .flat_map(|t| &t[..3])
+        .map(|v| f64::from(*v))
+        .sum::<f64>()
+        / (3 * texels.len()) as f64
 }
 
 /// A table without what differs from run to run: a line for each row, by column.
 pub fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
     let mut rows = table_with_times(path);
-    rows.iter_mut().for_each(|row| row.retain(|name, _| !name.ends_with(" ms")));
+    rows.iter_mut()
+        .for_each(|row| row.retain(|name, _| !name.ends_with(" ms")));
     rows
 }
 
 /// Rows of a CSV file by the names of its columns.
 pub fn table_with_times(path: &Path) -> Vec<BTreeMap<String, String>> {
-    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
+    csv::Reader::from_path(path)
+        .unwrap()
+        .deserialize()
+        .map(Result::unwrap)
+        .collect()
 }
 
 /// A copy of the repository's graphs, shaders and experiments, for what a test writes.

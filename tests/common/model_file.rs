@@ -14,12 +14,21 @@ pub const U16: u32 = 5123;
 pub const FLOAT: u32 = 5126;
 
 /// Corners of the square from (-1, -1) to (1, 1) in z = 0, as two triangles; its texture coordinates have v downwards.
-pub const SQUARE: [[f32; 3]; 6] =
-    [[-1., -1., 0.], [1., -1., 0.], [1., 1., 0.], [-1., -1., 0.], [1., 1., 0.], [-1., 1., 0.]];
+pub const SQUARE: [[f32; 3]; 6] = [
+    [-1., -1., 0.],
+    [1., -1., 0.],
+    [1., 1., 0.],
+    [-1., -1., 0.],
+    [1., 1., 0.],
+    [-1., 1., 0.],
+];
 pub const SQUARE_UV: [[f32; 2]; 6] = [[0., 1.], [1., 1.], [1., 0.], [0., 1.], [1., 0.], [0., 0.]];
 
 pub fn data_uri(bytes: &[u8]) -> String {
-    format!("data:application/octet-stream;base64,{}", base64::engine::general_purpose::STANDARD.encode(bytes))
+    format!(
+        "data:application/octet-stream;base64,{}",
+        base64::engine::general_purpose::STANDARD.encode(bytes)
+    )
 }
 
 pub fn png(width: u32, height: u32, rgba: &[[u8; 4]]) -> Vec<u8> {
@@ -40,41 +49,71 @@ pub struct Model {
 
 impl Model {
     pub fn new() -> Model {
-        let root = json!({ "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [] }] });
-        Model { root, bytes: Vec::new() }
+        let root =
+            json!({ "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [] }] });
+        Model {
+            root,
+            bytes: Vec::new(),
+        }
     }
 
     /// Adds to a list of the file.
     pub fn push(&mut self, list: &str, value: Value) -> usize {
         let lists = self.root.as_object_mut().unwrap();
-        let list = lists.entry(list).or_insert(json!([])).as_array_mut().unwrap();
+        let list = lists
+            .entry(list)
+            .or_insert(json!([]))
+            .as_array_mut()
+            .unwrap();
         list.push(value);
         list.len() - 1
     }
 
     /// A view of the first buffer. Buffers that are pushed come after it.
     pub fn view(&mut self, bytes: &[u8]) -> usize {
-        let view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
+        let view =
+            json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
         self.bytes.extend(bytes);
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         self.push("bufferViews", view)
     }
 
     /// An accessor of bytes that are its elements, and what else it says.
-    pub fn raw(&mut self, component: u32, kind: &str, count: usize, bytes: &[u8], more: Value) -> usize {
+    pub fn raw(
+        &mut self,
+        component: u32,
+        kind: &str,
+        count: usize,
+        bytes: &[u8],
+        more: Value,
+    ) -> usize {
         let view = self.view(bytes);
-        let mut accessor = json!({ "bufferView": view, "componentType": component, "type": kind, "count": count });
-        accessor.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        let mut accessor =
+            json!({ "bufferView": view, "componentType": component, "type": kind, "count": count });
+        accessor
+            .as_object_mut()
+            .unwrap()
+            .extend(more.as_object().unwrap().clone());
         self.push("accessors", accessor)
     }
 
     pub fn floats<const N: usize>(&mut self, values: &[[f32; N]]) -> usize {
-        let bytes: Vec<u8> = values.iter().flatten().flat_map(|f| f.to_le_bytes()).collect();
+        let bytes: Vec<u8> = values
+            .iter()
+            .flatten()
+            .flat_map(|f| f.to_le_bytes())
+            .collect();
         let of = |choose: fn(f32, f32) -> f32| -> Vec<f32> {
-            (0..N).map(|i| values.iter().map(|v| v[i]).reduce(choose).unwrap()).collect()
+            (0..N)
+                .map(|i| values.iter().map(|v| v[i]).reduce(choose).unwrap())
+                .collect()
         };
         let bounds = json!({ "min": of(f32::min), "max": of(f32::max) });
-        let kind = if N == 1 { "SCALAR".into() } else { format!("VEC{N}") };
+        let kind = if N == 1 {
+            "SCALAR".into()
+        } else {
+            format!("VEC{N}")
+        };
         self.raw(FLOAT, &kind, values.len(), &bytes, bounds)
     }
 
@@ -84,7 +123,10 @@ impl Model {
 
     /// A texture of texels in rows from the top.
     pub fn texture(&mut self, width: u32, height: u32, rgba: &[[u8; 4]], sampler: Value) -> usize {
-        let image = self.push("images", json!({ "uri": data_uri(&png(width, height, rgba)) }));
+        let image = self.push(
+            "images",
+            json!({ "uri": data_uri(&png(width, height, rgba)) }),
+        );
         let sampler = self.push("samplers", sampler);
         self.push("textures", json!({ "source": image, "sampler": sampler }))
     }
@@ -104,14 +146,20 @@ impl Model {
         let normals = self.floats(&[[0., 0., 1.]; 6]);
         let uvs = self.floats(&SQUARE_UV);
         let mut attributes = json!({ "POSITION": positions, "NORMAL": normals, "TEXCOORD_0": uvs });
-        attributes.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        attributes
+            .as_object_mut()
+            .unwrap()
+            .extend(more.as_object().unwrap().clone());
         self.mesh(attributes, material)
     }
 
     /// A node at the top of the scene.
     pub fn node(&mut self, node: Value) -> usize {
         let node = self.push("nodes", node);
-        self.root["scenes"][0]["nodes"].as_array_mut().unwrap().push(json!(node));
+        self.root["scenes"][0]["nodes"]
+            .as_array_mut()
+            .unwrap()
+            .push(json!(node));
         node
     }
 
@@ -120,7 +168,12 @@ impl Model {
         let mut root = self.root.clone();
         if !self.bytes.is_empty() {
             let first = json!({ "byteLength": self.bytes.len(), "uri": data_uri(&self.bytes) });
-            let others = self.root.get("buffers").and_then(Value::as_array).into_iter().flatten();
+            let others = self
+                .root
+                .get("buffers")
+                .and_then(Value::as_array)
+                .into_iter()
+                .flatten();
             root["buffers"] = std::iter::once(&first).chain(others).cloned().collect();
         }
         let path = folder.join(name);
@@ -135,12 +188,19 @@ impl Model {
 }
 
 pub fn open(path: &Path) -> Result<Scene, String> {
-    Scene::open(&path.to_string_lossy(), &|_, _| ControlFlow::Continue(())).map_err(|e| e.to_string())
+    Scene::open(&path.to_string_lossy(), &|_, _| ControlFlow::Continue(()))
+        .map_err(|e| e.to_string())
 }
 
 /// A strip from y 0 to 2 on two joints, the upper of which turns by 90 degrees in a second, or has turned already.
 pub fn bending(m: &mut Model, at_rest: bool) {
-    let positions = m.floats(&[[-0.5, 0., 0.], [0.5, 0., 0.], [0.5, 1., 0.], [0.5, 2., 0.], [-0.5, 2., 0.]]);
+    let positions = m.floats(&[
+        [-0.5, 0., 0.],
+        [0.5, 0., 0.],
+        [0.5, 1., 0.],
+        [0.5, 2., 0.],
+        [-0.5, 2., 0.],
+    ]);
     let normals = m.floats(&[[0., 0., 1.]; 5]);
     let (low, both, high) = ([1., 0., 0., 0.], [0.5, 0.5, 0., 0.], [0., 1., 0., 0.]);
     let weights = m.floats(&[low, low, both, high, high]);
@@ -150,18 +210,42 @@ pub fn bending(m: &mut Model, at_rest: bool) {
     let primitive = json!({ "attributes": attributes, "indices": indices });
     let mesh = m.push("meshes", json!({ "primitives": [primitive] }));
     let half = std::f32::consts::FRAC_1_SQRT_2;
-    let turned = if at_rest { [0., 0., half, half] } else { [0., 0., 0., 1.] };
-    let upper = m.push("nodes", json!({ "translation": [0, 1, 0], "rotation": turned }));
+    let turned = if at_rest {
+        [0., 0., half, half]
+    } else {
+        [0., 0., 0., 1.]
+    };
+    let upper = m.push(
+        "nodes",
+        json!({ "translation": [0, 1, 0], "rotation": turned }),
+    );
     let lower = m.node(json!({ "children": [upper] }));
-    let down = |y: f32| [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., y, 0., 1f32];
-    let bytes: Vec<u8> = [down(0.0), down(-1.0)].concat().iter().flat_map(|f| f.to_le_bytes()).collect();
+    let down = |y: f32| {
+        [
+            1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., y, 0., 1f32,
+        ]
+    };
+    let bytes: Vec<u8> = [down(0.0), down(-1.0)]
+        .concat()
+        .iter()
+        .flat_map(|f| f.to_le_bytes())
+        .collect();
     let inverse = m.raw(FLOAT, "MAT4", 2, &bytes, json!({}));
-    let skin = m.push("skins", json!({ "joints": [lower, upper], "inverseBindMatrices": inverse }));
+    let skin = m.push(
+        "skins",
+        json!({ "joints": [lower, upper], "inverseBindMatrices": inverse }),
+    );
     m.node(json!({ "mesh": mesh, "skin": skin, "translation": [7, 8, 9] }));
     if !at_rest {
-        let (times, values) = (m.floats(&[[0.0], [1.0]]), m.floats(&[[0., 0., 0., 1.], [0., 0., half, half]]));
+        let (times, values) = (
+            m.floats(&[[0.0], [1.0]]),
+            m.floats(&[[0., 0., 0., 1.], [0., 0., half, half]]),
+        );
         let channel = json!({ "sampler": 0, "target": { "node": upper, "path": "rotation" } });
         let sampler = json!({ "input": times, "output": values });
-        m.push("animations", json!({ "samplers": [sampler], "channels": [channel] }));
+        m.push(
+            "animations",
+            json!({ "samplers": [sampler], "channels": [channel] }),
+        );
     }
 }

@@ -20,8 +20,16 @@ pub fn world(scene: &Scene) -> Vec<[DVec3; 3]> {
     for (i, instance) in scene.instances.iter().enumerate() {
         let place = scene.instance_transform(i, 0.0).as_dmat4();
         let mesh = &scene.meshes[instance.mesh as usize];
-        let corner = |i: &u32| place.transform_point3(Vec3::from(mesh.vertices[*i as usize].position).as_dvec3());
-        list.extend(mesh.indices.as_chunks::<3>().0.iter().map(|t| t.each_ref().map(corner)));
+        let corner = |i: &u32| {
+            place.transform_point3(Vec3::from(mesh.vertices[*i as usize].position).as_dvec3())
+        };
+        list.extend(
+            mesh.indices
+                .as_chunks::<3>()
+                .0
+                .iter()
+                .map(|t| t.each_ref().map(corner)),
+        );
     }
     list
 }

@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{
-    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, EventMask, ImageFormat, InputFocus, MapState,
-    Window,
+    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, EventMask, ImageFormat,
+    InputFocus, MapState, Window,
 };
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
@@ -45,9 +45,15 @@ pub struct Screenshot {
 impl Screenshot {
     /// Some columns, without `rim` rows and columns at the edges.
     pub fn part(&self, columns: std::ops::Range<usize>, rim: usize) -> Vec<u8> {
-        let rows = self.rgba.chunks_exact(4 * self.size.0).skip(rim).take(self.size.1 - 2 * rim);
+        let rows = self
+            .rgba
+            .chunks_exact(4 * self.size.0)
+            .skip(rim)
+            .take(self.size.1 - 2 * rim);
         let columns = columns.start.max(rim)..columns.end.min(self.size.0 - rim);
-        rows.flat_map(|row| &row[4 * columns.start..4 * columns.end]).copied().collect()
+        rows.flat_map(|row| &row[4 * columns.start..4 * columns.end])
+            .copied()
+            .collect()
     }
 
     /// All but the rim, where the window may draw a border.
@@ -89,12 +95,22 @@ impl Drop for WindowDriver {
 
 fn screen() -> (Screen, String) {
     let mut server = Command::new("Xvfb")
-        .args(["-displayfd", "1", "-screen", "0", "1400x900x24", "-nolisten", "tcp"])
+        .args([
+            "-displayfd",
+            "1",
+            "-screen",
+            "0",
+            "1400x900x24",
+            "-nolisten",
+            "tcp",
+        ])
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
         .unwrap_or_else(|e| {
-            panic!("cannot start Xvfb ({e}): install the package xvfb, or run `scripts/setup.sh test`")
+            panic!(
+                "cannot start Xvfb ({e}): install the package xvfb, or run `scripts/setup.sh test`"
+            )
         });
     let mut number = String::new();
     let mut out = BufReader::new(server.stdout.take().unwrap());
@@ -120,7 +136,14 @@ impl WindowDriver {
         File::create(&log).unwrap();
         let window = format!("{}x{}", WINDOW.0, WINDOW.1);
         let program = conelab(home.path())
-            .args(["view", "configs/opened.ron", "--events", "events.jsonl", "--window", &window])
+            .args([
+                "view",
+                "configs/opened.ron",
+                "--events",
+                "events.jsonl",
+                "--window",
+                &window,
+            ])
             .args(args)
             .env("DISPLAY", &display)
             .env("CONELAB_CACHE", home.path().join("cache"))
@@ -164,14 +187,21 @@ impl WindowDriver {
     fn windows(&self) -> Option<Window> {
         let tree = self.x.query_tree(self.root).unwrap().reply().unwrap();
         tree.children.into_iter().find(|w| {
-            let name = self.x.get_property(false, *w, AtomEnum::WM_NAME, AtomEnum::ANY, 0, 64).unwrap().reply();
+            let name = self
+                .x
+                .get_property(false, *w, AtomEnum::WM_NAME, AtomEnum::ANY, 0, 64)
+                .unwrap()
+                .reply();
             let mapped = self.x.get_window_attributes(*w).unwrap().reply();
-            name.is_ok_and(|n| n.value == b"conelab") && mapped.is_ok_and(|m| m.map_state == MapState::VIEWABLE)
+            name.is_ok_and(|n| n.value == b"conelab")
+                && mapped.is_ok_and(|m| m.map_state == MapState::VIEWABLE)
         })
     }
 
     fn focus(&self) {
-        self.x.set_input_focus(InputFocus::PARENT, self.window, x11rb::CURRENT_TIME).unwrap();
+        self.x
+            .set_input_focus(InputFocus::PARENT, self.window, x11rb::CURRENT_TIME)
+            .unwrap();
         self.x.flush().unwrap();
     }
 
@@ -201,7 +231,13 @@ impl WindowDriver {
     }
 
     #[track_caller]
-    pub fn wait_at_most(&mut self, time: Duration, since: usize, what: &str, is: impl Fn(&Value) -> bool) -> Value {
+    pub fn wait_at_most(
+        &mut self,
+        time: Duration,
+        since: usize,
+        what: &str,
+        is: impl Fn(&Value) -> bool,
+    ) -> Value {
         let mut until = Instant::now() + time;
         let mut next = since;
         loop {
@@ -213,11 +249,18 @@ impl WindowDriver {
             }
             next = self.events.len();
             if Instant::now() > until || self.program.try_wait().unwrap().is_some() {
-                let mut last: Vec<String> =
-                    self.events[since..].iter().filter(|e| e["event"] != "widgets").map(Value::to_string).collect();
+                let mut last: Vec<String> = self.events[since..]
+                    .iter()
+                    .filter(|e| e["event"] != "widgets")
+                    .map(Value::to_string)
+                    .collect();
                 last.drain(..last.len().saturating_sub(12));
                 let text = self.texts().join(" | ");
-                panic!("no {what}; but\n{}\n{}\non the screen: {text}", last.join("\n"), self.stderr());
+                panic!(
+                    "no {what}; but\n{}\n{}\non the screen: {text}",
+                    last.join("\n"),
+                    self.stderr()
+                );
             }
             std::thread::sleep(Duration::from_millis(1));
         }
@@ -232,7 +275,9 @@ impl WindowDriver {
     /// Waits until the program shows its first picture that is no preview, and returns its fingerprint.
     #[track_caller]
     pub fn first_picture(&mut self) -> String {
-        self.wait(0, "first picture", |e| e["event"] == "picture" && e["preview"] == false);
+        self.wait(0, "first picture", |e| {
+            e["event"] == "picture" && e["preview"] == false
+        });
         self.resting(0)
     }
 
@@ -243,12 +288,20 @@ impl WindowDriver {
         let mut since = Instant::now();
         // The next picture of a slow device may take longer.
         let frame = |driver: &WindowDriver| {
-            let last = driver.events.iter().rev().find(|e| e["event"] == "picture" && e["side"] == side);
+            let last = driver
+                .events
+                .iter()
+                .rev()
+                .find(|e| e["event"] == "picture" && e["side"] == side);
             last.and_then(|e| e["gpu_ms"].as_f64()).unwrap_or(0.0)
         };
         // More frames follow until the picture has converged.
         let converged = |driver: &WindowDriver| {
-            let last = driver.events.iter().rev().find(|e| e["event"] == "picture" && e["side"] == side);
+            let last = driver
+                .events
+                .iter()
+                .rev()
+                .find(|e| e["event"] == "picture" && e["side"] == side);
             last.is_none_or(|e| e["left"] == 0)
         };
         while since.elapsed() < Duration::from_secs_f64(frame(self).mul_add(2e-3, 0.35))
@@ -266,8 +319,12 @@ impl WindowDriver {
     /// Fingerprints of the pictures so far.
     pub fn pictures(&mut self, side: usize) -> Vec<String> {
         self.now();
-        let list = self.events.iter().filter(|e| e["event"] == "picture" && e["side"] == side && e["preview"] == false);
-        list.map(|e| e["fingerprint"].as_str().unwrap().to_string()).collect()
+        let list = self
+            .events
+            .iter()
+            .filter(|e| e["event"] == "picture" && e["side"] == side && e["preview"] == false);
+        list.map(|e| e["fingerprint"].as_str().unwrap().to_string())
+            .collect()
     }
 
     /// Waits for a picture with this fingerprint.
@@ -282,7 +339,10 @@ impl WindowDriver {
     #[track_caller]
     pub fn other_picture(&mut self, since: usize, side: usize, print: &str) -> String {
         let event = self.wait(since, &format!("picture other than {print}"), |e| {
-            e["event"] == "picture" && e["side"] == side && e["preview"] == false && e["fingerprint"] != print
+            e["event"] == "picture"
+                && e["side"] == side
+                && e["preview"] == false
+                && e["fingerprint"] != print
         });
         event["fingerprint"].as_str().unwrap().to_string()
     }
@@ -297,7 +357,10 @@ impl WindowDriver {
 
     /// All labels on the screen.
     pub fn texts(&mut self) -> Vec<String> {
-        self.widgets().iter().map(|w| w["label"].as_str().unwrap().to_string()).collect()
+        self.widgets()
+            .iter()
+            .map(|w| w["label"].as_str().unwrap().to_string())
+            .collect()
     }
 
     /// Waits until `holds` of the labels.
@@ -317,14 +380,20 @@ impl WindowDriver {
         let mut last = None;
         loop {
             let widgets = self.widgets();
-            let found = widgets.iter().find(|w| w["label"] == label && (role.is_empty() || w["role"] == role));
+            let found = widgets
+                .iter()
+                .find(|w| w["label"] == label && (role.is_empty() || w["role"] == role));
             let rect = found.map(|w| [0, 1, 2, 3].map(|i| w["rect"][i].as_f64().unwrap()));
             match rect {
                 // Groups and menus open with a movement; the log of widgets comes ten times a second.
                 Some(rect) if last == Some(rect) => return rect,
                 _ => last = rect,
             }
-            assert!(Instant::now() < until, "no {role} '{label}' among {:?}", self.texts());
+            assert!(
+                Instant::now() < until,
+                "no {role} '{label}' among {:?}",
+                self.texts()
+            );
             std::thread::sleep(Duration::from_millis(150));
         }
     }
@@ -351,9 +420,21 @@ impl WindowDriver {
     // The hand.
 
     fn fake(&self, kind: u8, detail: u8, (x, y): (f64, f64)) {
-        let origin = self.x.translate_coordinates(self.window, self.root, 0, 0).unwrap().reply().unwrap();
-        let at = (origin.dst_x + x.round() as i16, origin.dst_y + y.round() as i16);
-        self.x.xtest_fake_input(kind, detail, 0, self.root, at.0, at.1, 0).unwrap().check().unwrap();
+        let origin = self
+            .x
+            .translate_coordinates(self.window, self.root, 0, 0)
+            .unwrap()
+            .reply()
+            .unwrap();
+        let at = (
+            origin.dst_x + x.round() as i16,
+            origin.dst_y + y.round() as i16,
+        );
+        self.x
+            .xtest_fake_input(kind, detail, 0, self.root, at.0, at.1, 0)
+            .unwrap()
+            .check()
+            .unwrap();
         // A frame of the window.
         std::thread::sleep(Duration::from_millis(40));
     }
@@ -375,7 +456,11 @@ impl WindowDriver {
         self.fake(4, 1, from);
         for i in 1..=4 {
             let t = f64::from(i) / 4.0;
-            self.fake(6, 0, (from.0 + t * (to.0 - from.0), from.1 + t * (to.1 - from.1)));
+            self.fake(
+                6,
+                0,
+                (from.0 + t * (to.0 - from.0), from.1 + t * (to.1 - from.1)),
+            );
         }
         self.fake(5, 1, to);
     }
@@ -383,7 +468,11 @@ impl WindowDriver {
     /// Turns the wheel up by so many notches, while keys are held.
     pub fn wheel(&self, at: (f64, f64), notches: usize, held: &[u32]) {
         let key = |kind: u8, symbol: &u32| {
-            self.x.xtest_fake_input(kind, self.code(*symbol), 0, self.root, 0, 0, 0).unwrap().check().unwrap();
+            self.x
+                .xtest_fake_input(kind, self.code(*symbol), 0, self.root, 0, 0, 0)
+                .unwrap()
+                .check()
+                .unwrap();
         };
         self.fake(6, 0, at);
         held.iter().for_each(|s| key(2, s));
@@ -398,11 +487,19 @@ impl WindowDriver {
     pub fn keys(&self, symbols: &[u32]) {
         let codes: Vec<u8> = symbols.iter().map(|s| self.code(*s)).collect();
         for code in &codes {
-            self.x.xtest_fake_input(2, *code, 0, self.root, 0, 0, 0).unwrap().check().unwrap();
+            self.x
+                .xtest_fake_input(2, *code, 0, self.root, 0, 0, 0)
+                .unwrap()
+                .check()
+                .unwrap();
         }
         std::thread::sleep(Duration::from_millis(10));
         for code in codes.iter().rev() {
-            self.x.xtest_fake_input(3, *code, 0, self.root, 0, 0, 0).unwrap().check().unwrap();
+            self.x
+                .xtest_fake_input(3, *code, 0, self.root, 0, 0, 0)
+                .unwrap()
+                .check()
+                .unwrap();
         }
     }
 
@@ -419,9 +516,18 @@ impl WindowDriver {
 
     fn code(&self, symbol: u32) -> u8 {
         let (low, high) = (self.x.setup().min_keycode, self.x.setup().max_keycode);
-        let map = self.x.get_keyboard_mapping(low, high - low + 1).unwrap().reply().unwrap();
+        let map = self
+            .x
+            .get_keyboard_mapping(low, high - low + 1)
+            .unwrap()
+            .reply()
+            .unwrap();
         let per = usize::from(map.keysyms_per_keycode);
-        let row = map.keysyms.chunks(per).position(|row| row[0] == symbol).expect("a key for it");
+        let row = map
+            .keysyms
+            .chunks(per)
+            .position(|row| row[0] == symbol)
+            .expect("a key for it");
         low + u8::try_from(row).unwrap()
     }
 
@@ -429,7 +535,11 @@ impl WindowDriver {
 
     pub fn resize(&self, width: u32, height: u32) {
         let size = ConfigureWindowAux::new().width(width).height(height);
-        self.x.configure_window(self.window, &size).unwrap().check().unwrap();
+        self.x
+            .configure_window(self.window, &size)
+            .unwrap()
+            .check()
+            .unwrap();
     }
 
     /// Its size, pixels.
@@ -450,17 +560,32 @@ impl WindowDriver {
     /// Closes the window as its frame's button would; the exit code, and how long it took.
     #[track_caller]
     pub fn close(&mut self) -> Duration {
-        let atom = |name: &[u8]| self.x.intern_atom(false, name).unwrap().reply().unwrap().atom;
+        let atom = |name: &[u8]| {
+            self.x
+                .intern_atom(false, name)
+                .unwrap()
+                .reply()
+                .unwrap()
+                .atom
+        };
         let data = [atom(b"WM_DELETE_WINDOW"), 0, 0, 0, 0];
         let message = ClientMessageEvent::new(32, self.window, atom(b"WM_PROTOCOLS"), data);
-        self.x.send_event(false, self.window, EventMask::NO_EVENT, message).unwrap().check().unwrap();
+        self.x
+            .send_event(false, self.window, EventMask::NO_EVENT, message)
+            .unwrap()
+            .check()
+            .unwrap();
         let start = Instant::now();
         loop {
             if let Some(status) = self.program.try_wait().unwrap() {
                 assert_eq!(status.code(), Some(0), "{}", self.stderr());
                 return start.elapsed();
             }
-            assert!(start.elapsed() < PATIENCE, "it does not end\n{}", self.stderr());
+            assert!(
+                start.elapsed() < PATIENCE,
+                "it does not end\n{}",
+                self.stderr()
+            );
             std::thread::sleep(Duration::from_millis(5));
         }
     }
@@ -468,9 +593,17 @@ impl WindowDriver {
     /// Resident memory, MiB.
     pub fn memory(&self) -> f64 {
         let mut text = String::new();
-        File::open(format!("/proc/{}/status", self.program.id())).unwrap().read_to_string(&mut text).unwrap();
+        File::open(format!("/proc/{}/status", self.program.id()))
+            .unwrap()
+            .read_to_string(&mut text)
+            .unwrap();
         let line = text.lines().find_map(|l| l.strip_prefix("VmRSS:")).unwrap();
-        line.trim().trim_end_matches(" kB").trim().parse::<f64>().unwrap() / 1024.0
+        line.trim()
+            .trim_end_matches(" kB")
+            .trim()
+            .parse::<f64>()
+            .unwrap()
+            / 1024.0
     }
 
     // The eye.
@@ -478,7 +611,12 @@ impl WindowDriver {
     /// Where picture A is, in pixels of the window.
     pub fn place(&mut self) -> Rect {
         self.now();
-        let last = self.events.iter().rev().find(|e| e["event"] == "place").expect("a picture");
+        let last = self
+            .events
+            .iter()
+            .rev()
+            .find(|e| e["event"] == "place")
+            .expect("a picture");
         [0, 1, 2, 3].map(|i| last["rect"][i].as_f64().unwrap())
     }
 
@@ -495,12 +633,30 @@ impl WindowDriver {
     /// The picture on the screen, at one point a texel.
     pub fn screenshot(&mut self) -> Screenshot {
         let [left, top, right, bottom] = self.place().map(|v| v as i16);
-        let last = self.events.iter().rev().find(|e| e["event"] == "picture").unwrap();
+        let last = self
+            .events
+            .iter()
+            .rev()
+            .find(|e| e["event"] == "picture")
+            .unwrap();
         let size = [0, 1].map(|i| usize::try_from(last["size"][i].as_u64().unwrap()).unwrap());
         let (width, height) = ((right - left).max(1) as u16, (bottom - top).max(1) as u16);
-        let image = self.x.get_image(ImageFormat::Z_PIXMAP, self.window, left, top, width, height, !0);
+        let image = self.x.get_image(
+            ImageFormat::Z_PIXMAP,
+            self.window,
+            left,
+            top,
+            width,
+            height,
+            !0,
+        );
         // While the window is smaller than the picture was, there is nothing to see.
-        let Ok(image) = image.unwrap().reply() else { return Screenshot { size: (0, 0), rgba: Vec::new() } };
+        let Ok(image) = image.unwrap().reply() else {
+            return Screenshot {
+                size: (0, 0),
+                rgba: Vec::new(),
+            };
+        };
         let bytes = image.data;
         let mut rgba = Vec::new();
         for y in 0..size[1] {
@@ -510,12 +666,19 @@ impl WindowDriver {
                 rgba.extend([bytes[i + 2], bytes[i + 1], bytes[i], 255]);
             }
         }
-        Screenshot { size: (size[0], size[1]), rgba }
+        Screenshot {
+            size: (size[0], size[1]),
+            rgba,
+        }
     }
 
     /// Waits until `holds` of what is on the screen.
     #[track_caller]
-    pub fn screenshot_until(&mut self, what: &str, holds: impl Fn(&Screenshot) -> bool) -> Screenshot {
+    pub fn screenshot_until(
+        &mut self,
+        what: &str,
+        holds: impl Fn(&Screenshot) -> bool,
+    ) -> Screenshot {
         let until = Instant::now() + PATIENCE;
         loop {
             let shot = self.screenshot();
@@ -524,7 +687,11 @@ impl WindowDriver {
             }
             if Instant::now() > until {
                 self.keep_screen();
-                panic!("{what} is not on the screen (kept in {})\n{:?}", kept().display(), self.texts());
+                panic!(
+                    "{what} is not on the screen (kept in {})\n{:?}",
+                    kept().display(),
+                    self.texts()
+                );
             }
             std::thread::sleep(Duration::from_millis(30));
         }
@@ -537,7 +704,12 @@ impl WindowDriver {
             return self.screenshot_until(&format!("picture {print}"), |shot| *shot == known);
         }
         self.wait(0, &format!("painting of {print}"), |e| {
-            e["event"] == "painted" && e["fingerprints"].as_array().unwrap().iter().any(|f| f == print)
+            e["event"] == "painted"
+                && e["fingerprints"]
+                    .as_array()
+                    .unwrap()
+                    .iter()
+                    .any(|f| f == print)
         });
         let shot = self.still_screenshot();
         self.known.insert(print.to_string(), shot.clone());
@@ -560,10 +732,22 @@ impl WindowDriver {
     /// Keeps what the window shows, for a person to look at.
     pub fn keep_screen(&self) {
         let size = self.x.get_geometry(self.window).unwrap().reply().unwrap();
-        let image = self.x.get_image(ImageFormat::Z_PIXMAP, self.window, 0, 0, size.width, size.height, !0);
+        let image = self.x.get_image(
+            ImageFormat::Z_PIXMAP,
+            self.window,
+            0,
+            0,
+            size.width,
+            size.height,
+            !0,
+        );
         let bytes = image.unwrap().reply().unwrap().data;
-        let rgb = bytes.chunks_exact(4).flat_map(|p| [p[2], p[1], p[0]]).collect();
-        let picture = image::RgbImage::from_raw(size.width.into(), size.height.into(), rgb).unwrap();
+        let rgb = bytes
+            .chunks_exact(4)
+            .flat_map(|p| [p[2], p[1], p[0]])
+            .collect();
+        let picture =
+            image::RgbImage::from_raw(size.width.into(), size.height.into(), rgb).unwrap();
         picture.save(kept()).unwrap();
     }
 

@@ -63,8 +63,18 @@ const RED: Point = [1.0, 0.0, 0.0];
 const BLUE: Point = [0.0, 0.0, 1.0];
 const CHECKER: [u8; 4] = [200, 100, 50, 255];
 
-fn case(name: &'static str, world: World, objects: Text, connections: Text, expect: Vec<Expect>) -> Case {
-    Case { name, fbx: document(world, &objects, &connections), expect }
+fn case(
+    name: &'static str,
+    world: World,
+    objects: Text,
+    connections: Text,
+    expect: Vec<Expect>,
+) -> Case {
+    Case {
+        name,
+        fbx: document(world, &objects, &connections),
+        expect,
+    }
 }
 
 /// A box below a node with these properties.
@@ -75,26 +85,72 @@ fn one(name: &'static str, world: World, properties: Text, mut expect: Vec<Expec
 }
 
 /// A box of one material.
-fn made_of(name: &'static str, kind: &str, properties: &str, more: (Text, Text), expect: Vec<Expect>) -> Case {
+fn made_of(
+    name: &'static str,
+    kind: &str,
+    properties: &str,
+    more: (Text, Text),
+    expect: Vec<Expect>,
+) -> Case {
     let uvs: Vec<f64> = (0..24).flat_map(|i| [f64::from(i), 0.25]).collect();
-    let layers = layer("UV", 0, "map", "ByPolygonVertex", "Direct", &array("UV", &uvs))
-        + layer("Material", 0, "", "AllSame", "IndexToDirect", &array("Materials", &[0]));
-    let objects = mesh(1, &box_points(), &SIDES, &layers, &[("UV", 0), ("Material", 0)])
-        + model(2, "box", "Mesh", "")
+    let layers = layer(
+        "UV",
+        0,
+        "map",
+        "ByPolygonVertex",
+        "Direct",
+        &array("UV", &uvs),
+    ) + layer(
+        "Material",
+        0,
+        "",
+        "AllSame",
+        "IndexToDirect",
+        &array("Materials", &[0]),
+    );
+    let objects = mesh(
+        1,
+        &box_points(),
+        &SIDES,
+        &layers,
+        &[("UV", 0), ("Material", 0)],
+    ) + model(2, "box", "Mesh", "")
         + material(3, "m", kind, properties)
         + more.0;
-    case(name, Y_UP, objects, below(2, 0) + below(1, 2) + below(3, 2) + more.1, expect)
+    case(
+        name,
+        Y_UP,
+        objects,
+        below(2, 0) + below(1, 2) + below(3, 2) + more.1,
+        expect,
+    )
 }
 
 fn color(name: &str, [r, g, b]: [f64; 3]) -> Text {
-    Text(format!("P: \"{name}\", \"Color\", \"\", \"A\",{r},{g},{b}\n"))
+    Text(format!(
+        "P: \"{name}\", \"Color\", \"\", \"A\",{r},{g},{b}\n"
+    ))
 }
 
 /// A light below a node.
-fn light(name: &'static str, world: World, node: Text, properties: Text, expect: Vec<Expect>) -> Case {
-    let objects =
-        solid(1) + model(2, "box", "Mesh", "") + model(3, "lamp", "Light", &node) + attribute(4, "Light", &properties);
-    case(name, world, objects, below(2, 0) + below(1, 2) + below(3, 0) + below(4, 3), expect)
+fn light(
+    name: &'static str,
+    world: World,
+    node: Text,
+    properties: Text,
+    expect: Vec<Expect>,
+) -> Case {
+    let objects = solid(1)
+        + model(2, "box", "Mesh", "")
+        + model(3, "lamp", "Light", &node)
+        + attribute(4, "Light", &properties);
+    case(
+        name,
+        world,
+        objects,
+        below(2, 0) + below(1, 2) + below(3, 0) + below(4, 3),
+        expect,
+    )
 }
 
 pub fn cases() -> Vec<Case> {
@@ -109,25 +165,67 @@ pub fn cases() -> Vec<Case> {
 
 fn spaces() -> Vec<Case> {
     let parented = |name, above: Text, below_it: Text, expect: Vec<Expect>| {
-        let objects = solid(1) + model(2, "box", "Mesh", &below_it) + model(3, "above", "Null", &above);
-        case(name, Y_UP, objects, below(3, 0) + below(2, 3) + below(1, 2), expect)
+        let objects =
+            solid(1) + model(2, "box", "Mesh", &below_it) + model(3, "above", "Null", &above);
+        case(
+            name,
+            Y_UP,
+            objects,
+            below(3, 0) + below(2, 3) + below(1, 2),
+            expect,
+        )
     };
     vec![
-        one("metres, y up", Y_UP, Text::default(), vec![Box([X, Y, Z, O])]),
+        one(
+            "metres, y up",
+            Y_UP,
+            Text::default(),
+            vec![Box([X, Y, Z, O])],
+        ),
         one(
             "centimetres",
             CM,
             move_to(100.0, 0.0, 0.0),
-            vec![Box([[0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.01], X])],
+            vec![Box([
+                [0.01, 0.0, 0.0],
+                [0.0, 0.01, 0.0],
+                [0.0, 0.0, 0.01],
+                X,
+            ])],
         ),
         // (x, y, z) of a frame with z up is (x, z, -y).
-        one("z up", Z_UP, move_to(0.0, 0.0, 5.0), vec![Box([X, [0.0, 0.0, -1.0], Y, [0.0, 5.0, 0.0]])]),
+        one(
+            "z up",
+            Z_UP,
+            move_to(0.0, 0.0, 5.0),
+            vec![Box([X, [0.0, 0.0, -1.0], Y, [0.0, 5.0, 0.0]])],
+        ),
         // z of a left-handed file is -z of the scene.
-        one("left-handed", LEFT, move_to(0.0, 0.0, 5.0), vec![Box([X, Y, [0.0, 0.0, -1.0], [0.0, 0.0, -5.0]])]),
-        one("turned about z, in degrees", Y_UP, turn(0.0, 0.0, 90.0), vec![Box([Y, [-1.0, 0.0, 0.0], Z, O])]),
+        one(
+            "left-handed",
+            LEFT,
+            move_to(0.0, 0.0, 5.0),
+            vec![Box([X, Y, [0.0, 0.0, -1.0], [0.0, 0.0, -5.0]])],
+        ),
+        one(
+            "turned about z, in degrees",
+            Y_UP,
+            turn(0.0, 0.0, 90.0),
+            vec![Box([Y, [-1.0, 0.0, 0.0], Z, O])],
+        ),
         // About x first, then about z.
-        one("turned about two axes", Y_UP, turn(90.0, 0.0, 90.0), vec![Box([Y, Z, X, O])]),
-        one("mirrored", Y_UP, scale(-2.0, 1.0, 1.0), vec![Box([[-2.0, 0.0, 0.0], Y, Z, O])]),
+        one(
+            "turned about two axes",
+            Y_UP,
+            turn(90.0, 0.0, 90.0),
+            vec![Box([Y, Z, X, O])],
+        ),
+        one(
+            "mirrored",
+            Y_UP,
+            scale(-2.0, 1.0, 1.0),
+            vec![Box([[-2.0, 0.0, 0.0], Y, Z, O])],
+        ),
         one(
             "turned about a pivot",
             Y_UP,
@@ -140,13 +238,26 @@ fn spaces() -> Vec<Case> {
             turn(0.0, 0.0, 90.0)
                 + vector("GeometricTranslation", [3.0, 0.0, 0.0])
                 + vector("GeometricScaling", [2.0, 2.0, 2.0]),
-            vec![Box([[0.0, 2.0, 0.0], [-2.0, 0.0, 0.0], [0.0, 0.0, 2.0], [0.0, 3.0, 0.0]])],
+            vec![Box([
+                [0.0, 2.0, 0.0],
+                [-2.0, 0.0, 0.0],
+                [0.0, 0.0, 2.0],
+                [0.0, 3.0, 0.0],
+            ])],
         ),
         parented(
             "below a node that is moved, turned and scaled",
             move_to(10.0, 0.0, 0.0) + turn(0.0, 90.0, 0.0) + scale(2.0, 2.0, 2.0),
             move_to(1.0, 0.0, 0.0),
-            vec![Box([[0.0, 0.0, -2.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0], [10.0, 0.0, -2.0]]), Outward],
+            vec![
+                Box([
+                    [0.0, 0.0, -2.0],
+                    [0.0, 2.0, 0.0],
+                    [2.0, 0.0, 0.0],
+                    [10.0, 0.0, -2.0],
+                ]),
+                Outward,
+            ],
         ),
         parented(
             "the geometry of a node above moves nothing below",
@@ -167,7 +278,9 @@ fn spaces() -> Vec<Case> {
             vec![Triangles(0), Warns("invisible nodes are left out ('box')")],
         ),
         {
-            let objects = solid(1) + model(2, "a", "Mesh", "") + model(3, "b", "Mesh", &move_to(5.0, 0.0, 0.0));
+            let objects = solid(1)
+                + model(2, "a", "Mesh", "")
+                + model(3, "b", "Mesh", &move_to(5.0, 0.0, 0.0));
             let connections = below(2, 0) + below(3, 0) + below(1, 2) + below(1, 3);
             let bounds = Bounds(0.0, O, [6.0, 2.0, 3.0]);
             case(
@@ -182,19 +295,41 @@ fn spaces() -> Vec<Case> {
 }
 
 fn meshes() -> Vec<Case> {
-    let plain = |name, points: &[f64], polygons: &[i32], layers: &str, kinds: &[(&str, u32)], expect| {
-        let objects = mesh(1, points, polygons, layers, kinds) + model(2, "n", "Mesh", "");
-        case(name, Y_UP, objects, below(2, 0) + below(1, 2), expect)
-    };
+    let plain =
+        |name, points: &[f64], polygons: &[i32], layers: &str, kinds: &[(&str, u32)], expect| {
+            let objects = mesh(1, points, polygons, layers, kinds) + model(2, "n", "Mesh", "");
+            case(name, Y_UP, objects, below(2, 0) + below(1, 2), expect)
+        };
     let square = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
     // A pentagon with a notch down to (1, 0.5).
-    let notch = [0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 2.0, 2.0, 0.0, 1.0, 0.5, 0.0, 0.0, 2.0, 0.0];
+    let notch = [
+        0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 2.0, 2.0, 0.0, 1.0, 0.5, 0.0, 0.0, 2.0, 0.0,
+    ];
     // Two squares that meet at a right angle along x = 1.
-    let bent = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 1.0, 1.0, -1.0];
+    let bent = [
+        0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 1.0, 1.0, -1.0,
+    ];
     let folds = [0, 1, 2, -4, 1, 4, 5, -3];
-    let smooth = |values: &[i32]| layer("Smoothing", 0, "", "ByPolygon", "Direct", &array("Smoothing", values));
-    let uv =
-        |number, name, values: &[f64]| layer("UV", number, name, "ByPolygonVertex", "Direct", &array("UV", values));
+    let smooth = |values: &[i32]| {
+        layer(
+            "Smoothing",
+            0,
+            "",
+            "ByPolygon",
+            "Direct",
+            &array("Smoothing", values),
+        )
+    };
+    let uv = |number, name, values: &[f64]| {
+        layer(
+            "UV",
+            number,
+            name,
+            "ByPolygonVertex",
+            "Direct",
+            &array("UV", values),
+        )
+    };
     let two = uv(0, "first", &[0.0, 0.0, 1.0, 0.0, 1.0, 0.75, 0.0, 0.75])
         + uv(1, "second", &[0.5, 0.5, 2.0, 0.5, 2.0, 2.0, 0.5, 2.0]);
     let painted = layer(
@@ -203,7 +338,8 @@ fn meshes() -> Vec<Case> {
         "",
         "ByPolygonVertex",
         "IndexToDirect",
-        &(array("Colors", &[1.0, 0.0, 0.5, 1.0, 0.0, 1.0, 0.0, 1.0]) + array("ColorIndex", &[0, 0, 1, 1])),
+        &(array("Colors", &[1.0, 0.0, 0.5, 1.0, 0.0, 1.0, 0.0, 1.0])
+            + array("ColorIndex", &[0, 0, 1, 1])),
     );
     let leaning = layer(
         "Normal",
@@ -211,7 +347,10 @@ fn meshes() -> Vec<Case> {
         "",
         "ByVertice",
         "Direct",
-        &array("Normals", &[0.6, 0.0, 0.8, 0.6, 0.0, 0.8, 0.6, 0.0, 0.8, 0.6, 0.0, 0.8]),
+        &array(
+            "Normals",
+            &[0.6, 0.0, 0.8, 0.6, 0.0, 0.8, 0.6, 0.0, 0.8, 0.6, 0.0, 0.8],
+        ),
     );
     vec![
         plain(
@@ -220,7 +359,12 @@ fn meshes() -> Vec<Case> {
             &[0, 1, 2, 3, -5],
             "",
             &[],
-            vec![Triangles(3), Bounds(0.0, O, [2.0, 2.0, 0.0]), Normal(X.map(|c| 2.0 * c), Z), Outward],
+            vec![
+                Triangles(3),
+                Bounds(0.0, O, [2.0, 2.0, 0.0]),
+                Normal(X.map(|c| 2.0 * c), Z),
+                Outward,
+            ],
         ),
         plain(
             "normals of the file",
@@ -244,16 +388,30 @@ fn meshes() -> Vec<Case> {
             &folds,
             &smooth(&[1, 1]),
             &[("Smoothing", 0)],
-            vec![Normals(X, 1), Normal(X, [0.5f32.sqrt(), 0.0, 0.5f32.sqrt()])],
+            vec![
+                Normals(X, 1),
+                Normal(X, [0.5f32.sqrt(), 0.0, 0.5f32.sqrt()]),
+            ],
         ),
-        plain("no smoothing group", &bent, &folds, &smooth(&[0, 0]), &[("Smoothing", 0)], vec![Normals(X, 2)]),
+        plain(
+            "no smoothing group",
+            &bent,
+            &folds,
+            &smooth(&[0, 0]),
+            &[("Smoothing", 0)],
+            vec![Normals(X, 2)],
+        ),
         plain(
             "two sets of coordinates, no texture",
             &square,
             &[0, 1, 2, -4],
             &two,
             &[("UV", 0), ("UV", 1)],
-            vec![Uv(O, [0.0, 0.0]), Uv([1.0, 1.0, 0.0], [1.0, 0.75]), Uv(Y, [0.0, 0.75])],
+            vec![
+                Uv(O, [0.0, 0.0]),
+                Uv([1.0, 1.0, 0.0], [1.0, 0.75]),
+                Uv(Y, [0.0, 0.75]),
+            ],
         ),
         // 0.5 of sRGB is 0.21404 (IEC 61966-2-1).
         plain(
@@ -262,7 +420,11 @@ fn meshes() -> Vec<Case> {
             &[0, 1, 2, -4],
             &painted,
             &[("Color", 0)],
-            vec![Painted(X, [1.0, 0.0, 0.21404]), Painted(Y, [0.0, 1.0, 0.0]), Base("default", [1.0; 3])],
+            vec![
+                Painted(X, [1.0, 0.0, 0.21404]),
+                Painted(Y, [0.0, 1.0, 0.0]),
+                Base("default", [1.0; 3]),
+            ],
         ),
         plain(
             "triangles without area and lines",
@@ -273,16 +435,39 @@ fn meshes() -> Vec<Case> {
             vec![Triangles(2), Warns("dropped 1 triangles without area")],
         ),
         {
-            let layers =
-                layer("Material", 0, "", "ByPolygon", "IndexToDirect", &array("Materials", &[0, 0, 0, 1, 0, 0]));
+            let layers = layer(
+                "Material",
+                0,
+                "",
+                "ByPolygon",
+                "IndexToDirect",
+                &array("Materials", &[0, 0, 0, 1, 0, 0]),
+            );
             let objects = mesh(1, &box_points(), &SIDES, &layers, &[("Material", 0)])
                 + model(2, "box", "Mesh", "")
                 + model(5, "other", "Mesh", &move_to(10.0, 0.0, 0.0))
                 + material(3, "red", "phong", &color("DiffuseColor", [1.0, 0.0, 0.0]))
-                + material(4, "blue", "lambert", &color("DiffuseColor", [0.0, 0.0, 1.0]));
+                + material(
+                    4,
+                    "blue",
+                    "lambert",
+                    &color("DiffuseColor", [0.0, 0.0, 1.0]),
+                );
             // The other node has them the other way round.
-            let connections = [(2, 0), (1, 2), (3, 2), (4, 2), (5, 0), (1, 5), (4, 5), (3, 5)];
-            let connections = connections.map(|(child, parent)| below(child, parent)).into_iter().sum();
+            let connections = [
+                (2, 0),
+                (1, 2),
+                (3, 2),
+                (4, 2),
+                (5, 0),
+                (1, 5),
+                (4, 5),
+                (3, 5),
+            ];
+            let connections = connections
+                .map(|(child, parent)| below(child, parent))
+                .into_iter()
+                .sum();
             case(
                 "materials by polygon and node",
                 Y_UP,
@@ -305,7 +490,11 @@ fn materials() -> Vec<Case> {
     let textured = |more: &str, relative: &str, absolute: &str, name: &str| {
         (texture(6, relative, absolute, more), property(6, 3, name))
     };
-    let second = |set: &str| Text(format!("Properties70:  {{\nP: \"UVSet\", \"KString\", \"\", \"\", \"{set}\"\n}}\n"));
+    let second = |set: &str| {
+        Text(format!(
+            "Properties70:  {{\nP: \"UVSet\", \"KString\", \"\", \"\", \"{set}\"\n}}\n"
+        ))
+    };
     let scaled = "Properties70:  {\nP: \"Scaling\", \"Vector\", \"\", \"A\",2,4,1\n}\n";
     let none = || (Text::default(), Text::default());
     vec![
@@ -340,7 +529,11 @@ fn materials() -> Vec<Case> {
             "phong",
             &(color("TransparentColor", [1.0; 3]) + number("TransparencyFactor", 0.75)),
             none(),
-            vec![LeftOut("m", true), Triangles(0), Warns("materials with an opacity of 0.25 are left out ('m')")],
+            vec![
+                LeftOut("m", true),
+                Triangles(0),
+                Warns("materials with an opacity of 0.25 are left out ('m')"),
+            ],
         ),
         made_of(
             "a factor of 1 of black lets nothing through",
@@ -375,7 +568,11 @@ fn materials() -> Vec<Case> {
             "phong",
             "",
             textured("", "leaf.png", "", "TransparentColor"),
-            vec![LeftOut("m", false), Cutoff("m", 0.5), BaseMap("m", false, [255, 255, 255, 0])],
+            vec![
+                LeftOut("m", false),
+                Cutoff("m", 0.5),
+                BaseMap("m", false, [255, 255, 255, 0]),
+            ],
         ),
         made_of(
             "a picture that is clamped",
@@ -405,14 +602,29 @@ fn materials() -> Vec<Case> {
             "a picture next to the file replaces the colour",
             "phong",
             &color("DiffuseColor", [0.5, 0.0, 0.0]),
-            textured("", "textures\\\\wall.png", "C:\\\\gone\\\\wall.png", "DiffuseColor"),
-            vec![Base("m", [1.0; 3]), BaseMap("m", false, CHECKER), Uv(O, [0.0, 0.25]), Warnings(0)],
+            textured(
+                "",
+                "textures\\\\wall.png",
+                "C:\\\\gone\\\\wall.png",
+                "DiffuseColor",
+            ),
+            vec![
+                Base("m", [1.0; 3]),
+                BaseMap("m", false, CHECKER),
+                Uv(O, [0.0, 0.25]),
+                Warnings(0),
+            ],
         ),
         made_of(
             "a picture in another folder and case",
             "phong",
             "",
-            textured("", "..\\\\maps\\\\Wall.PNG", "C:\\\\Users\\\\me\\\\Textures\\\\Wall.PNG", "DiffuseColor"),
+            textured(
+                "",
+                "..\\\\maps\\\\Wall.PNG",
+                "C:\\\\Users\\\\me\\\\Textures\\\\Wall.PNG",
+                "DiffuseColor",
+            ),
             vec![
                 BaseMap("m", false, CHECKER),
                 Warns("files were found under a name in another case, or in another folder"),
@@ -423,7 +635,10 @@ fn materials() -> Vec<Case> {
             "phong",
             "",
             textured("", "gone.png", "C:\\\\gone.png", "DiffuseColor"),
-            vec![BaseMap("m", false, [255, 0, 255, 255]), Warns("gone.png of material m')")],
+            vec![
+                BaseMap("m", false, [255, 0, 255, 255]),
+                Warns("gone.png of material m')"),
+            ],
         ),
         made_of(
             "a scaled picture repeats less often",
@@ -453,7 +668,9 @@ fn materials() -> Vec<Case> {
             textured("", "height.png", "", "Bump"),
             vec![
                 NormalMap("m", None),
-                Warns("bump maps that hold heights are left out. Convert them to normal maps ('m')"),
+                Warns(
+                    "bump maps that hold heights are left out. Convert them to normal maps ('m')",
+                ),
             ],
         ),
         made_of(
@@ -461,24 +678,49 @@ fn materials() -> Vec<Case> {
             "phong",
             "",
             textured("", "lean.png", "", "SpecularColor"),
-            vec![Warns("maps of the specular colour are left out ('m')"), Warnings(1)],
+            vec![
+                Warns("maps of the specular colour are left out ('m')"),
+                Warnings(1),
+            ],
         ),
         {
             let uv = |number, name, values: &[f64]| {
-                layer("UV", number, name, "ByPolygonVertex", "Direct", &array("UV", values))
+                layer(
+                    "UV",
+                    number,
+                    name,
+                    "ByPolygonVertex",
+                    "Direct",
+                    &array("UV", values),
+                )
             };
             let layers = uv(0, "first", &[0.0, 0.0, 1.0, 0.0, 1.0, 0.75])
                 + uv(1, "second", &[0.5, 0.25, 2.0, 0.5, 2.0, 2.0])
-                + layer("Material", 0, "", "AllSame", "IndexToDirect", &array("Materials", &[0]));
+                + layer(
+                    "Material",
+                    0,
+                    "",
+                    "AllSame",
+                    "IndexToDirect",
+                    &array("Materials", &[0]),
+                );
             let points = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0];
-            let objects = mesh(1, &points, &[0, 1, -3], &layers, &[("UV", 0), ("Material", 0), ("UV", 1)])
-                + model(2, "n", "Mesh", "")
+            let objects = mesh(
+                1,
+                &points,
+                &[0, 1, -3],
+                &layers,
+                &[("UV", 0), ("Material", 0), ("UV", 1)],
+            ) + model(2, "n", "Mesh", "")
                 + material(3, "m", "phong", "")
                 + texture(6, "lean.png", "", &second("first"))
                 + texture(7, "textures/wall.png", "", &second("second"));
             // The colour's set is named by a later texture than the emission's.
-            let connections =
-                below(2, 0) + below(1, 2) + below(3, 2) + property(6, 3, "NormalMap") + property(7, 3, "DiffuseColor");
+            let connections = below(2, 0)
+                + below(1, 2)
+                + below(3, 2)
+                + property(6, 3, "NormalMap")
+                + property(7, 3, "DiffuseColor");
             case(
                 "textures of two sets",
                 Y_UP,
@@ -510,10 +752,17 @@ fn lights_and_cameras() -> Vec<Case> {
         let objects = solid(1)
             + model(2, "box", "Mesh", "")
             + model(3, "first", "Camera", "")
-            + model(5, "second", "Camera", &(move_to(100.0, 200.0, 300.0) + turn(0.0, 90.0, 0.0)))
+            + model(
+                5,
+                "second",
+                "Camera",
+                &(move_to(100.0, 200.0, 300.0) + turn(0.0, 90.0, 0.0)),
+            )
             + attribute(4, "Camera", &properties);
-        let connections =
-            [(2, 0), (1, 2), (3, 0), (4, 3), (5, 0), (4, 5)].map(|(a, b)| below(a, b)).into_iter().sum::<Text>();
+        let connections = [(2, 0), (1, 2), (3, 0), (4, 3), (5, 0), (4, 5)]
+            .map(|(a, b)| below(a, b))
+            .into_iter()
+            .sum::<Text>();
         case(name, CM, objects, connections, expect)
     };
     // An aperture of one inch and a focal length of 12.7 mm see 90 degrees.
@@ -532,7 +781,11 @@ fn lights_and_cameras() -> Vec<Case> {
             CM,
             move_to(100.0, 200.0, 300.0),
             lamp(0, 2),
-            vec![Light("lamp", "point", half, [1.0, 2.0, 3.0], down), unit, Warnings(1)],
+            vec![
+                Light("lamp", "point", half, [1.0, 2.0, 3.0], down),
+                unit,
+                Warnings(1),
+            ],
         ),
         light(
             "a sun that is turned about z",
@@ -560,7 +813,10 @@ fn lights_and_cameras() -> Vec<Case> {
             Y_UP,
             Text::default(),
             lamp(3, 2),
-            vec![Light("lamp", "spot 0 90", half, O, down), Warns("area lights have no extent")],
+            vec![
+                Light("lamp", "spot 0 90", half, O, down),
+                Warns("area lights have no extent"),
+            ],
         ),
         light(
             "a lamp without decay",
@@ -591,16 +847,32 @@ fn lights_and_cameras() -> Vec<Case> {
         camera(
             "no perspective",
             integer("CameraProjectionType", 1),
-            vec![Warns("cameras that are no usable perspective are left out ('first', 'second')")],
+            vec![Warns(
+                "cameras that are no usable perspective are left out ('first', 'second')",
+            )],
         ),
     ]
 }
 
 fn motions() -> Vec<Case> {
-    let moved = |name, world, node: &str, above: &str, property: &str, keys: &[[f64; 3]], animated: u32, expect| {
+    let moved = |name,
+                 world,
+                 node: &str,
+                 above: &str,
+                 property: &str,
+                 keys: &[[f64; 3]],
+                 animated: u32,
+                 expect| {
         let (objects, connections) = motion(animated, property, keys);
-        let objects = solid(1) + model(2, "box", "Mesh", node) + model(3, "above", "Null", above) + objects;
-        case(name, world, objects, below(3, 0) + below(2, 3) + below(1, 2) + connections, expect)
+        let objects =
+            solid(1) + model(2, "box", "Mesh", node) + model(3, "above", "Null", above) + objects;
+        case(
+            name,
+            world,
+            objects,
+            below(3, 0) + below(2, 3) + below(1, 2) + connections,
+            expect,
+        )
     };
     let (one, two) = ([1.0, 2.0, 3.0], [0.0, 4.0, 0.0]);
     let second = text!("AnimationStack: 9100, \"AnimStack::run\", \"\" {{\n}}\n");
@@ -644,7 +916,10 @@ fn motions() -> Vec<Case> {
             "Lcl Translation",
             &[[0.0; 3], two],
             2,
-            vec![Bounds(0.0, [-2.0, 0.0, 0.0], [0.0, 1.0, 3.0]), Bounds(0.5, [-4.0, 0.0, 0.0], [-2.0, 1.0, 3.0])],
+            vec![
+                Bounds(0.0, [-2.0, 0.0, 0.0], [0.0, 1.0, 3.0]),
+                Bounds(0.5, [-4.0, 0.0, 0.0], [-2.0, 1.0, 3.0]),
+            ],
         ),
         moved(
             "turned about a pivot",
@@ -654,7 +929,10 @@ fn motions() -> Vec<Case> {
             "Lcl Rotation",
             &[[0.0; 3], [0.0, 0.0, 180.0]],
             2,
-            vec![Bounds(0.0, O, one), Bounds(0.5, [-1.0, -1.0, 0.0], [1.0, 0.0, 3.0])],
+            vec![
+                Bounds(0.0, O, one),
+                Bounds(0.5, [-1.0, -1.0, 0.0], [1.0, 0.0, 3.0]),
+            ],
         ),
         moved(
             "the node above turns, with z up",
@@ -688,17 +966,26 @@ fn motions() -> Vec<Case> {
             "Lcl Scaling",
             &[[1.0; 3], [2.0; 3]],
             2,
-            vec![Bounds(0.0, O, one), Bounds(0.5, O, [1.5, 3.0, 4.5]), Warnings(0)],
+            vec![
+                Bounds(0.0, O, one),
+                Bounds(0.5, O, [1.5, 3.0, 4.5]),
+                Warnings(0),
+            ],
         ),
     ]
 }
 
 fn others() -> Vec<Case> {
-    let bare = |name, text: &str, expect| Case { name, fbx: Text(text.into()), expect };
+    let bare = |name, text: &str, expect| Case {
+        name,
+        fbx: Text(text.into()),
+        expect,
+    };
     // All vertices follow a bone that was at the origin when they were bound, and is at (0, 5, 0).
     let identity = "1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1";
     let weights = array("Indexes", &[0, 1, 2, 3, 4, 5, 6, 7]) + array("Weights", &[1.0; 8]);
-    let matrices = format!("Transform: *16 {{\na: {identity}\n}}\nTransformLink: *16 {{\na: {identity}\n}}\n");
+    let matrices =
+        format!("Transform: *16 {{\na: {identity}\n}}\nTransformLink: *16 {{\na: {identity}\n}}\n");
     let bound = || {
         solid(1)
             + model(2, "box", "Mesh", "")
@@ -708,13 +995,22 @@ fn others() -> Vec<Case> {
                  Deformer: 7, \"SubDeformer::c\", \"Cluster\" {{\nVersion: 100\n{weights}{matrices}}}\n"
             ))
     };
-    let bones = || [(2, 0), (1, 2), (3, 0), (6, 1), (7, 6), (3, 7)].map(|(a, b)| below(a, b)).into_iter().sum::<Text>();
+    let bones = || {
+        [(2, 0), (1, 2), (3, 0), (6, 1), (7, 6), (3, 7)]
+            .map(|(a, b)| below(a, b))
+            .into_iter()
+            .sum::<Text>()
+    };
     let skinned = case(
         "a skin in the pose of its bone",
         Y_UP,
         bound(),
         bones(),
-        vec![Bounds(0.0, [0.0, 5.0, 0.0], [1.0, 7.0, 3.0]), Outward, Warnings(0)],
+        vec![
+            Bounds(0.0, [0.0, 5.0, 0.0], [1.0, 7.0, 3.0]),
+            Outward,
+            Warnings(0),
+        ],
     );
     let (moves, moved) = motion(3, "Lcl Translation", &[[0.0, 5.0, 0.0], [0.0, 9.0, 2.0]]);
     let walking = case(
@@ -731,7 +1027,8 @@ fn others() -> Vec<Case> {
     );
     // All vertices go up by 2 at 100 percent; at rest there are 25.
     let blend = |percent: &str| {
-        let offsets = array("Indexes", &[0, 1, 2, 3, 4, 5, 6, 7]) + array("Vertices", &[0.0, 2.0, 0.0].repeat(8));
+        let offsets = array("Indexes", &[0, 1, 2, 3, 4, 5, 6, 7])
+            + array("Vertices", &[0.0, 2.0, 0.0].repeat(8));
         solid(1)
             + model(2, "box", "Mesh", &move_to(0.0, 0.0, 1.0))
             + Text(format!(
@@ -741,13 +1038,22 @@ fn others() -> Vec<Case> {
                  Geometry: 8, \"Geometry::up\", \"Shape\" {{\nVersion: 100\n{offsets}}}\n"
             ))
     };
-    let shapes = || [(2, 0), (1, 2), (6, 1), (7, 6), (8, 7)].map(|(a, b)| below(a, b)).into_iter().sum::<Text>();
+    let shapes = || {
+        [(2, 0), (1, 2), (6, 1), (7, 6), (8, 7)]
+            .map(|(a, b)| below(a, b))
+            .into_iter()
+            .sum::<Text>()
+    };
     let shaped = case(
         "a blend shape at its weight",
         Y_UP,
         blend("25"),
         shapes(),
-        vec![Bounds(0.0, [0.0, 0.5, 1.0], [1.0, 2.5, 4.0]), Outward, Warnings(0)],
+        vec![
+            Bounds(0.0, [0.0, 0.5, 1.0], [1.0, 2.5, 4.0]),
+            Outward,
+            Warnings(0),
+        ],
     );
     let (grows, grown) = motion(7, "DeformPercent", &[[0.0; 3], [100.0; 3]]);
     let growing = case(
@@ -768,14 +1074,19 @@ fn others() -> Vec<Case> {
             + model(3, "coarse", "Mesh", "")
             + model(4, "levels", "LodGroup", "")
             + attribute(5, "LodGroup", "");
-        let connections =
-            [(4, 0), (5, 4), (2, 4), (3, 4), (1, 2), (1, 3)].map(|(a, b)| below(a, b)).into_iter().sum::<Text>();
+        let connections = [(4, 0), (5, 4), (2, 4), (3, 4), (1, 2), (1, 3)]
+            .map(|(a, b)| below(a, b))
+            .into_iter()
+            .sum::<Text>();
         case(
             "levels of detail",
             Y_UP,
             objects,
             connections,
-            vec![Triangles(12), Warns("of levels of detail the first is shown ('levels')")],
+            vec![
+                Triangles(12),
+                Warns("of levels of detail the first is shown ('levels')"),
+            ],
         )
     };
     vec![
@@ -784,10 +1095,28 @@ fn others() -> Vec<Case> {
         shaped,
         growing,
         levels,
-        case("nothing", Y_UP, Text::default(), Text::default(), vec![Triangles(0), Warns("no triangles")]),
+        case(
+            "nothing",
+            Y_UP,
+            Text::default(),
+            Text::default(),
+            vec![Triangles(0), Warns("no triangles")],
+        ),
         bare("no bytes", "", vec![Error("it is no FBX file")]),
-        bare("a page", "<html>404 not found</html>\n", vec![Error("it is no FBX file")]),
-        bare("an OBJ", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", vec![Error("it is no FBX file")]),
-        bare("a version of the future", "Kaydara FBX Binary  \0\x1a\0\u{7f}\u{7f}\0\0", vec![Error("a.fbx")]),
+        bare(
+            "a page",
+            "<html>404 not found</html>\n",
+            vec![Error("it is no FBX file")],
+        ),
+        bare(
+            "an OBJ",
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+            vec![Error("it is no FBX file")],
+        ),
+        bare(
+            "a version of the future",
+            "Kaydara FBX Binary  \0\x1a\0\u{7f}\u{7f}\0\0",
+            vec![Error("a.fbx")],
+        ),
     ]
 }

@@ -48,11 +48,24 @@ pub struct World {
     pub right: (u8, i8),
 }
 
-pub const Y_UP: World = World { unit: 100.0, up: (1, 1), front: (2, 1), right: (0, 1) };
+pub const Y_UP: World = World {
+    unit: 100.0,
+    up: (1, 1),
+    front: (2, 1),
+    right: (0, 1),
+};
 pub const CM: World = World { unit: 1.0, ..Y_UP };
-pub const Z_UP: World = World { unit: 100.0, up: (2, 1), front: (1, -1), right: (0, 1) };
+pub const Z_UP: World = World {
+    unit: 100.0,
+    up: (2, 1),
+    front: (1, -1),
+    right: (0, 1),
+};
 /// As of DirectX: the front is the other way.
-pub const LEFT: World = World { front: (2, -1), ..Y_UP };
+pub const LEFT: World = World {
+    front: (2, -1),
+    ..Y_UP
+};
 
 /// A whole file.
 pub fn document(world: World, objects: &str, connections: &str) -> Text {
@@ -79,7 +92,14 @@ pub fn array<T: ToString>(name: &str, values: &[T]) -> Text {
 }
 
 /// A layer of a mesh: `values` are its arrays.
-pub fn layer(kind: &str, number: u32, name: &str, mapping: &str, reference: &str, values: &str) -> Text {
+pub fn layer(
+    kind: &str,
+    number: u32,
+    name: &str,
+    mapping: &str,
+    reference: &str,
+    values: &str,
+) -> Text {
     text!(
         "LayerElement{kind}: {number} {{\nVersion: 101\nName: \"{name}\"\nMappingInformationType: \"{mapping}\"\n\
          ReferenceInformationType: \"{reference}\"\n{values}}}\n"
@@ -87,27 +107,48 @@ pub fn layer(kind: &str, number: u32, name: &str, mapping: &str, reference: &str
 }
 
 /// A mesh of polygons: each ends with the complement of its last index. `kinds` are its layers.
-pub fn mesh(id: u32, points: &[f64], polygons: &[i32], layers: &str, kinds: &[(&str, u32)]) -> Text {
+pub fn mesh(
+    id: u32,
+    points: &[f64],
+    polygons: &[i32],
+    layers: &str,
+    kinds: &[(&str, u32)],
+) -> Text {
     let mut lists = Text::default();
     for number in [0, 1] {
         let of: Text = kinds
             .iter()
             .filter(|(_, n)| *n == number)
-            .map(|(kind, n)| text!("LayerElement:  {{\nType: \"LayerElement{kind}\"\nTypedIndex: {n}\n}}\n"))
+            .map(|(kind, n)| {
+                text!("LayerElement:  {{\nType: \"LayerElement{kind}\"\nTypedIndex: {n}\n}}\n")
+            })
             .sum();
         lists = lists + text!("Layer: {number} {{\nVersion: 100\n{of}}}\n");
     }
-    let body = array("Vertices", points) + array("PolygonVertexIndex", polygons) + text!("{layers}") + lists;
+    let body = array("Vertices", points)
+        + array("PolygonVertexIndex", polygons)
+        + text!("{layers}")
+        + lists;
     text!("Geometry: {id}, \"Geometry::\", \"Mesh\" {{\n{body}}}\n")
 }
 
 /// Corners of a box from the origin to (1, 2, 3): bits of the index are x, y and z.
 pub fn box_points() -> Vec<f64> {
-    (0..8).flat_map(|i| [f64::from(i & 1), f64::from(i >> 1 & 1) * 2.0, f64::from(i >> 2) * 3.0]).collect()
+    (0..8)
+        .flat_map(|i| {
+            [
+                f64::from(i & 1),
+                f64::from(i >> 1 & 1) * 2.0,
+                f64::from(i >> 2) * 3.0,
+            ]
+        })
+        .collect()
 }
 
 /// Its six sides, counter-clockwise from outside: -z, +z, -y, +y, -x, +x.
-pub const SIDES: [i32; 24] = [0, 2, 3, -2, 4, 5, 7, -7, 0, 1, 5, -5, 2, 6, 7, -4, 0, 4, 6, -3, 1, 3, 7, -6];
+pub const SIDES: [i32; 24] = [
+    0, 2, 3, -2, 4, 5, 7, -7, 0, 1, 5, -5, 2, 6, 7, -4, 0, 4, 6, -3, 1, 3, 7, -6,
+];
 
 /// The box without normals.
 pub fn solid(id: u32) -> Text {
@@ -116,7 +157,9 @@ pub fn solid(id: u32) -> Text {
 
 /// A node; `properties` are lines of `P`.
 pub fn model(id: u32, name: &str, kind: &str, properties: &str) -> Text {
-    text!("Model: {id}, \"Model::{name}\", \"{kind}\" {{\nVersion: 232\nProperties70:  {{\n{properties}}}\n}}\n")
+    text!(
+        "Model: {id}, \"Model::{name}\", \"{kind}\" {{\nVersion: 232\nProperties70:  {{\n{properties}}}\n}}\n"
+    )
 }
 
 /// A property of three numbers.
@@ -205,6 +248,10 @@ pub fn motion(node: u32, name: &str, keys: &[[f64; 3]]) -> (Text, Text) {
     let connections = below(9001, 9000)
         + below(9002, 9001)
         + property(9002, node, name)
-        + ["X", "Y", "Z"].iter().zip(9010..).map(|(axis, id)| property(id, 9002, &format!("d|{axis}"))).sum::<Text>();
+        + ["X", "Y", "Z"]
+            .iter()
+            .zip(9010..)
+            .map(|(axis, id)| property(id, 9002, &format!("d|{axis}")))
+            .sum::<Text>();
     (objects, connections)
 }

@@ -81,7 +81,11 @@ pub fn mutated(random: &mut Random, bytes: &[u8], other: &[u8]) -> Vec<u8> {
 
 fn change(random: &mut Random, out: &mut Vec<u8>, other: &[u8]) {
     let at = random.below(out.len() + 1);
-    let most = if random.below(4) == 0 { out.len() + 1 } else { 16 };
+    let most = if random.below(4) == 0 {
+        out.len() + 1
+    } else {
+        16
+    };
     let length = random.below(most);
     let end = (at + length).min(out.len());
     let word = WORDS[random.below(WORDS.len())].as_bytes();
@@ -103,14 +107,32 @@ fn change(random: &mut Random, out: &mut Vec<u8>, other: &[u8]) {
             out.splice(at..end, part.iter().copied());
         }
         8 if at + 4 <= out.len() => {
-            let number = [0, 1, 0x7fff_ffff, 0x8000_0000, u32::MAX, 0x7f80_0000, 0x7fc0_0000, 65536][random.below(8)];
+            let number = [
+                0,
+                1,
+                0x7fff_ffff,
+                0x8000_0000,
+                u32::MAX,
+                0x7f80_0000,
+                0x7fc0_0000,
+                65536,
+            ][random.below(8)];
             out[at..at + 4].copy_from_slice(&number.to_le_bytes());
         }
         _ => {
             // A number of the text becomes another.
             let is_digit = |b: &u8| b.is_ascii_digit() || b".-+e".contains(b);
-            let Some(from) = out[at..].iter().position(u8::is_ascii_digit).map(|i| at + i) else { return };
-            let to = out[from..].iter().position(|b| !is_digit(b)).map_or(out.len(), |i| from + i);
+            let Some(from) = out[at..]
+                .iter()
+                .position(u8::is_ascii_digit)
+                .map(|i| at + i)
+            else {
+                return;
+            };
+            let to = out[from..]
+                .iter()
+                .position(|b| !is_digit(b))
+                .map_or(out.len(), |i| from + i);
             out.splice(from..to, WORDS[random.below(19)].bytes());
         }
     }

@@ -9,7 +9,9 @@ use conelab::scene::Scene;
 use conelab::shader::{ShaderCompiler, Source};
 use conelab::vulkan::Stage;
 use ddsfile::{AlphaMode, D3D10ResourceDimension, Dds, DxgiFormat, NewDxgiParams};
-use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage,
+};
 use image::{DynamicImage, ImageFormat, Rgb32FImage, RgbaImage};
 use sha2::{Digest, Sha256};
 use std::io::Cursor;
@@ -81,15 +83,43 @@ const FILES: [(Kind, &str, &str); 51] = [
     (Kind::Sweep, "cones.ron", "cones.ron"),
     (Kind::Suite, "motion.ron", "motion.ron"),
     (Kind::Path, "atrium.ron", "atrium.ron"),
-    (Kind::Capture, "capture/capture.json", "capture/capture.json"),
-    (Kind::Capture, "capture/capture.json", "capture/experiment.ron"),
-    (Kind::Capture, "capture/capture.json", "capture/graph/passes/graph.ron"),
-    (Kind::Capture, "capture/capture.json", "capture/graph/shaders/fill.comp"),
-    (Kind::Reference, "reference/reference.json", "reference/reference.json"),
-    (Kind::Reference, "reference/reference.json", "reference/sums-32.exr"),
+    (
+        Kind::Capture,
+        "capture/capture.json",
+        "capture/capture.json",
+    ),
+    (
+        Kind::Capture,
+        "capture/capture.json",
+        "capture/experiment.ron",
+    ),
+    (
+        Kind::Capture,
+        "capture/capture.json",
+        "capture/graph/passes/graph.ron",
+    ),
+    (
+        Kind::Capture,
+        "capture/capture.json",
+        "capture/graph/shaders/fill.comp",
+    ),
+    (
+        Kind::Reference,
+        "reference/reference.json",
+        "reference/reference.json",
+    ),
+    (
+        Kind::Reference,
+        "reference/reference.json",
+        "reference/sums-32.exr",
+    ),
     (Kind::Module, "module.spv", "module.spv"),
     (Kind::Points, "points/sweep.json", "points/sweep.json"),
-    (Kind::Points, "points/sweep.json", "points/points/0123456789abcdef0123456789abcdef.json"),
+    (
+        Kind::Points,
+        "points/sweep.json",
+        "points/points/0123456789abcdef0123456789abcdef.json",
+    ),
     (Kind::Times, "times.json", "times.json"),
     (Kind::Picture, "sky.exr", "sky.exr"),
     (Kind::Picture, "sky.hdr", "sky.hdr"),
@@ -102,7 +132,12 @@ pub fn all() -> Vec<Seed> {
     write(folder.path());
     let seed = |(kind, opened, mutated): (Kind, &'static str, &'static str)| {
         let bytes = std::fs::read(folder.path().join(mutated)).unwrap();
-        Seed { kind, opened, mutated, bytes }
+        Seed {
+            kind,
+            opened,
+            mutated,
+            bytes,
+        }
     };
     FILES.into_iter().map(seed).collect()
 }
@@ -112,27 +147,51 @@ pub fn write(folder: &Path) {
     let put = |name: &str, bytes: &[u8]| std::fs::write(folder.join(name), bytes).unwrap();
     let builtin = |name: &str| Scene::open(name, &|_, _| ControlFlow::Continue(())).unwrap();
     let (room, moving) = (builtin("cornell"), builtin("moving-box"));
-    ["room.obj", "room.gltf", "room.glb"].iter().for_each(|name| drop(room.export(&folder.join(name)).unwrap()));
+    ["room.obj", "room.gltf", "room.glb"]
+        .iter()
+        .for_each(|name| drop(room.export(&folder.join(name)).unwrap()));
     moving.export(&folder.join("moving.gltf")).unwrap();
     let mut skin = Model::new();
     bending(&mut skin, false);
     skin.write(folder, "skin.gltf");
-    std::fs::copy(root().join("tests/fbx_files/blender.fbx"), folder.join("blender.fbx")).unwrap();
+    std::fs::copy(
+        root().join("tests/fbx_files/blender.fbx"),
+        folder.join("blender.fbx"),
+    )
+    .unwrap();
     put("text.fbx", super::fbx::room().as_bytes());
     put("small.obj", SMALL_OBJ.as_bytes());
     put("small.mtl", SMALL_MTL.as_bytes());
     let picture = DynamicImage::ImageRgba8(RgbaImage::from_fn(8, 8, |x, y| {
-        image::Rgba([x as u8 * 30, y as u8 * 30, 128, if (x + y) % 3 == 0 { 0 } else { 255 }])
+        image::Rgba([
+            x as u8 * 30,
+            y as u8 * 30,
+            128,
+            if (x + y) % 3 == 0 { 0 } else { 255 },
+        ])
     }));
-    for (name, format) in [("t.png", ImageFormat::Png), ("t.tga", ImageFormat::Tga), ("t.bmp", ImageFormat::Bmp)] {
+    for (name, format) in [
+        ("t.png", ImageFormat::Png),
+        ("t.tga", ImageFormat::Tga),
+        ("t.bmp", ImageFormat::Bmp),
+    ] {
         put(name, &encoded(&picture, format));
     }
-    put("t.jpg", &encoded(&DynamicImage::ImageRgb8(picture.to_rgb8()), ImageFormat::Jpeg));
+    put(
+        "t.jpg",
+        &encoded(
+            &DynamicImage::ImageRgb8(picture.to_rgb8()),
+            ImageFormat::Jpeg,
+        ),
+    );
     put("bc1.dds", &dds(DxgiFormat::BC1_UNorm));
     put("bc7.dds", &dds(DxgiFormat::BC7_UNorm_sRGB));
     put("plain.dds", &dds(DxgiFormat::R8G8B8A8_UNorm));
     let sky = Rgb32FImage::from_fn(16, 8, |x, y| image::Rgb([x as f32, y as f32 * 0.5, 1.0]));
-    put("sky.hdr", &encoded(&DynamicImage::ImageRgb32F(sky.clone()), ImageFormat::Hdr));
+    put(
+        "sky.hdr",
+        &encoded(&DynamicImage::ImageRgb32F(sky.clone()), ImageFormat::Hdr),
+    );
     let linear = Linear::radiance((16, 8), sky.pixels().map(|p| p.0).collect());
     conelab::results::picture::write_linear(&folder.join("sky.exr"), &linear).unwrap();
     put("scene.ron", SCENE.as_bytes());
@@ -156,10 +215,21 @@ pub fn write(folder: &Path) {
         let beside = text.replace("\"../", &format!("\"{}/", root().join("configs").display()));
         put(name, beside.as_bytes());
     }
-    let times = std::fs::read_dir(root().join("configs/times")).unwrap().flatten().next().unwrap();
+    let times = std::fs::read_dir(root().join("configs/times"))
+        .unwrap()
+        .flatten()
+        .next()
+        .unwrap();
     std::fs::copy(times.path(), folder.join("times.json")).unwrap();
-    let folders = ["capture/graph/passes", "capture/graph/shaders", "points/points", "reference"];
-    folders.iter().for_each(|name| std::fs::create_dir_all(folder.join(name)).unwrap());
+    let folders = [
+        "capture/graph/passes",
+        "capture/graph/shaders",
+        "points/points",
+        "reference",
+    ];
+    folders
+        .iter()
+        .for_each(|name| std::fs::create_dir_all(folder.join(name)).unwrap());
     put("capture/capture.json", CAPTURE.as_bytes());
     put("capture/picture.png", &encoded(&picture, ImageFormat::Png));
     put(
@@ -169,13 +239,26 @@ pub fn write(folder: &Path) {
     put("capture/graph/passes/graph.ron", GRAPH.as_bytes());
     put("capture/graph/shaders/fill.comp", FILL.as_bytes());
     put("points/sweep.json", POINTS.as_bytes());
-    put("points/points/0123456789abcdef0123456789abcdef.json", POINT.as_bytes());
+    put(
+        "points/points/0123456789abcdef0123456789abcdef.json",
+        POINT.as_bytes(),
+    );
     put("t.ktx2", &ktx2());
     put("lit.gltf", LIT.as_bytes());
-    put("etc1s.gltf", LIT.replace("t.ktx2", "etc1s_alpha.ktx2").as_bytes());
-    put("uastc.gltf", LIT.replace("t.ktx2", "uastc_zstd.ktx2").as_bytes());
+    put(
+        "etc1s.gltf",
+        LIT.replace("t.ktx2", "etc1s_alpha.ktx2").as_bytes(),
+    );
+    put(
+        "uastc.gltf",
+        LIT.replace("t.ktx2", "uastc_zstd.ktx2").as_bytes(),
+    );
     for name in ["etc1s_alpha.ktx2", "uastc_zstd.ktx2", "ext.glb", "khr.glb"] {
-        std::fs::copy(root().join("tests/gltf_compressed").join(name), folder.join(name)).unwrap();
+        std::fs::copy(
+            root().join("tests/gltf_compressed").join(name),
+            folder.join(name),
+        )
+        .unwrap();
     }
     let (sums, record) = reference();
     put("reference/sums-32.exr", &sums);
@@ -203,7 +286,10 @@ fn dds(format: DxgiFormat) -> Vec<u8> {
         alpha_mode: AlphaMode::Straight,
     })
     .unwrap();
-    file.data.iter_mut().enumerate().for_each(|(i, byte)| *byte = i as u8);
+    file.data
+        .iter_mut()
+        .enumerate()
+        .for_each(|(i, byte)| *byte = i as u8);
     let mut bytes = Vec::new();
     file.write(&mut bytes).unwrap();
     bytes
@@ -216,17 +302,34 @@ pub const REFERENCE: (u32, u32) = (4, 3);
 fn reference() -> (Vec<u8>, String) {
     let size = (REFERENCE.0 as usize, REFERENCE.1 as usize);
     let mut layers = exr::prelude::SmallVec::new();
-    for layer in PARTS.iter().flat_map(|part| [format!("{part}.0"), format!("{part}.1")]) {
-        let values = |i: usize| FlatSamples::F32(vec![if i == 3 { 16.0 } else { i as f32 + 0.5 }; 12]);
-        let list = [("R", 0), ("G", 1), ("B", 2), ("A", 3)].map(|(name, i)| AnyChannel::new(name, values(i)));
+    for layer in PARTS
+        .iter()
+        .flat_map(|part| [format!("{part}.0"), format!("{part}.1")])
+    {
+        let values =
+            |i: usize| FlatSamples::F32(vec![if i == 3 { 16.0 } else { i as f32 + 0.5 }; 12]);
+        let list = [("R", 0), ("G", 1), ("B", 2), ("A", 3)]
+            .map(|(name, i)| AnyChannel::new(name, values(i)));
         let channels = AnyChannels::sort(list.into_iter().collect());
-        layers.push(Layer::new(size, LayerAttributes::named(layer.as_str()), Encoding::FAST_LOSSLESS, channels));
+        layers.push(Layer::new(
+            size,
+            LayerAttributes::named(layer.as_str()),
+            Encoding::FAST_LOSSLESS,
+            channels,
+        ));
     }
     let mut out = Cursor::new(Vec::new());
     let window = exr::meta::header::ImageAttributes::with_size(size);
-    Image::from_layers(window, layers).write().non_parallel().to_buffered(&mut out).unwrap();
+    Image::from_layers(window, layers)
+        .write()
+        .non_parallel()
+        .to_buffered(&mut out)
+        .unwrap();
     let bytes = out.into_inner();
-    let sha256: String = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
+    let sha256: String = Sha256::digest(&bytes)
+        .iter()
+        .map(|b| format!("{b:02x}"))
+        .collect();
     let record = format!(
         "{{\"schema\":\"conelab-reference-2\",\"sums\":\"sums-32.exr\",\"sha256\":\"{sha256}\",\"samples\":32,\
          \"size\":[4,3],\"noise\":{{}},\"experiment\":\"e\",\"scene\":\"s\",\"params\":{{\"seed\":\"1\"}},\
@@ -239,7 +342,9 @@ fn reference() -> (Vec<u8>, String) {
 fn ktx2() -> Vec<u8> {
     let mut out = b"\xabKTX 20\xbb\r\n\x1a\n".to_vec();
     // R8G8B8A8, size, layers, faces, levels, no compression; index of the descriptor, no key and no global data; a level.
-    let words = [37u32, 1, 4, 4, 0, 0, 1, 1, 0, 104, 4, 0, 0, 0, 0, 0, 0, 108, 0, 64, 0, 64, 0, 4];
+    let words = [
+        37u32, 1, 4, 4, 0, 0, 1, 1, 0, 104, 4, 0, 0, 0, 0, 0, 0, 108, 0, 64, 0, 64, 0, 4,
+    ];
     out.extend(words.iter().flat_map(|w| w.to_le_bytes()));
     out.resize(108 + 64, 128);
     out
@@ -284,11 +389,23 @@ const PARTS: [&str; 5] = ["diffuse", "direct", "occlusion", "specular", "total"]
 
 /// A shader as the cache keeps it.
 static MODULE: LazyLock<Vec<u8>> = LazyLock::new(|| {
-    let folders = Folders { passes: root().join("passes"), shaders: root().join("shaders") };
+    let folders = Folders {
+        passes: root().join("passes"),
+        shaders: root().join("shaders"),
+    };
     let graph = load(&folders.passes.join("preview.ron"), &folders).unwrap();
-    let source = Source { file: "preview/preview.frag".into(), stage: Stage::Fragment };
-    let compiled = ShaderCompiler::new(&folders.shaders, None).compile(&source, &generated(&graph, &graph.params));
-    compiled.unwrap().words.iter().flat_map(|w| w.to_le_bytes()).collect()
+    let source = Source {
+        file: "preview/preview.frag".into(),
+        stage: Stage::Fragment,
+    };
+    let compiled = ShaderCompiler::new(&folders.shaders, None)
+        .compile(&source, &generated(&graph, &graph.params));
+    compiled
+        .unwrap()
+        .words
+        .iter()
+        .flat_map(|w| w.to_le_bytes())
+        .collect()
 });
 
 /// A triangle with a texture of another format, a spot and a camera.

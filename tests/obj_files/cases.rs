@@ -64,17 +64,32 @@ const UV_QUAD: &[u8] =
 
 /// A case without a library.
 const fn plain(name: &'static str, obj: &'static [u8], expect: &'static [Expect]) -> Case {
-    Case { name, obj, mtl: b"", expect }
+    Case {
+        name,
+        obj,
+        mtl: b"",
+        expect,
+    }
 }
 
 /// A case with a red and a blue material.
 const fn red(name: &'static str, obj: &'static [u8], expect: &'static [Expect]) -> Case {
-    Case { name, obj, mtl: RED_MTL, expect }
+    Case {
+        name,
+        obj,
+        mtl: RED_MTL,
+        expect,
+    }
 }
 
 /// A square with the material `m`.
 const fn quad(name: &'static str, mtl: &'static [u8], expect: &'static [Expect]) -> Case {
-    Case { name, obj: UV_QUAD, mtl, expect }
+    Case {
+        name,
+        obj: UV_QUAD,
+        mtl,
+        expect,
+    }
 }
 
 pub const CASES: &[Case] = &[

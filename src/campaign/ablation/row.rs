@@ -106,7 +106,11 @@ struct Sample {
 impl Sample {
     /// Of a quantity whose changes up to `noise`, in its unit, are none.
     fn relative(unchanged: f64, changed: f64, noise: f64) -> Sample {
-        Sample { unchanged, growth: changed / unchanged - 1.0, noise: LEAST.max(noise / unchanged) }
+        Sample {
+            unchanged,
+            growth: changed / unchanged - 1.0,
+            noise: LEAST.max(noise / unchanged),
+        }
     }
 }
 
@@ -114,8 +118,12 @@ impl Delta {
     /// Means over scenes; nothing without one that has numbers.
     fn over(samples: &[(&String, Sample)]) -> Option<Delta> {
         let finite: Vec<_> = samples.iter().filter(|s| s.1.growth.is_finite()).collect();
-        let (scene, worst) = finite.iter().max_by(|a, b| a.1.growth.total_cmp(&b.1.growth))?;
-        let mean = |of: fn(&Sample) -> f64| finite.iter().map(|s| of(&s.1)).sum::<f64>() / finite.len() as f64;
+        let (scene, worst) = finite
+            .iter()
+            .max_by(|a, b| a.1.growth.total_cmp(&b.1.growth))?;
+        let mean = |of: fn(&Sample) -> f64| {
+            finite.iter().map(|s| of(&s.1)).sum::<f64>() / finite.len() as f64
+        };
         // The noise of one scene knows nothing of another's: squares add up. What is too small to count is not noise.
         let independent = (mean(|s| s.noise * s.noise) / finite.len() as f64).sqrt();
         Some(Delta {
@@ -153,11 +161,19 @@ pub fn rows(
         .iter()
         .map(|scene| {
             let key = (scene.clone(), NOTHING.to_string());
-            (scene, runs.iter().filter_map(|run| run.get(&key)?.as_ref().ok()).collect())
+            (
+                scene,
+                runs.iter()
+                    .filter_map(|run| run.get(&key)?.as_ref().ok())
+                    .collect(),
+            )
         })
         .collect();
     let first = runs.first();
-    Ok(changes.iter().map(|change| row(change, &unchanged, first, parts)).collect())
+    Ok(changes
+        .iter()
+        .map(|change| row(change, &unchanged, first, parts))
+        .collect())
 }
 
 fn read(folder: &PathBuf) -> Result<Points, LabError> {
@@ -174,7 +190,12 @@ fn read(folder: &PathBuf) -> Result<Points, LabError> {
     Ok(points)
 }
 
-fn row(change: &Change, unchanged: &[(&String, Vec<&Point>)], run: Option<&Points>, parts: &[String]) -> Row {
+fn row(
+    change: &Change,
+    unchanged: &[(&String, Vec<&Point>)],
+    run: Option<&Points>,
+    parts: &[String],
+) -> Row {
     let (mut measured, mut failed) = (Vec::new(), Vec::new());
     for (scene, before) in unchanged {
         let key = ((*scene).clone(), change.setting());
@@ -190,32 +211,58 @@ fn row(change: &Change, unchanged: &[(&String, Vec<&Point>)], run: Option<&Point
         failed.push(((*scene).clone(), why));
     }
     let over = |of: &dyn Fn(&[&Point], &Point) -> Option<Sample>| {
-        let samples: Vec<(&String, Sample)> =
-            measured.iter().filter_map(|(scene, before, after)| Some((*scene, of(before, after)?))).collect();
+        let samples: Vec<(&String, Sample)> = measured
+            .iter()
+            .filter_map(|(scene, before, after)| Some((*scene, of(before, after)?)))
+            .collect();
         Delta::over(&samples)
     };
     let mut errors = Vec::new();
     for part in parts {
         for metric in Metric::few() {
             let delta = over(&|before, after| error(before.first()?, after, part, metric));
-            errors.extend(delta.map(|delta| ErrorChange { part: part.clone(), metric, delta }));
+            errors.extend(delta.map(|delta| ErrorChange {
+                part: part.clone(),
+                metric,
+                delta,
+            }));
         }
     }
     let ms = over(&|before, after| Some(time(before, after)));
     let bytes = over(&|before, after| Some(memory(before.first()?, after)));
     let signs: Vec<i8> = errors.iter().map(|e| e.delta.sign()).collect();
     let sign = |cost: &Option<Delta>| cost.as_ref().map_or(0, Delta::sign);
-    let verdict = if measured.is_empty() { Verdict::Failed } else { verdict(&signs, sign(&ms), sign(&bytes)) };
-    Row { change: change.clone(), ms, bytes, errors, verdict, failed }
+    let verdict = if measured.is_empty() {
+        Verdict::Failed
+    } else {
+        verdict(&signs, sign(&ms), sign(&bytes))
+    };
+    Row {
+        change: change.clone(),
+        ms,
+        bytes,
+        errors,
+        verdict,
+        failed,
+    }
 }
 
 fn error(before: &Point, after: &Point, part: &str, metric: &Metric) -> Option<Sample> {
-    let value = |p: &Point| Some(metric.distance(p.scores.get(part)?.get(metric.key))).filter(|v| !v.is_nan());
+    let value = |p: &Point| {
+        Some(metric.distance(p.scores.get(part)?.get(metric.key))).filter(|v| !v.is_nan())
+    };
     let (unchanged, changed) = (value(before)?, value(after)?);
     // What the reference's noise gives a picture without error. It is in both numbers: a change is known far better.
-    let known = metric.noise.as_ref().map_or(0.0, |of| of.perfect * (of.of)(before.noise_of(part)));
+    let known = metric
+        .noise
+        .as_ref()
+        .map_or(0.0, |of| of.perfect * (of.of)(before.noise_of(part)));
     Some(match metric.best {
-        Best::One => Sample { unchanged, growth: changed - unchanged, noise: LEAST },
+        Best::One => Sample {
+            unchanged,
+            growth: changed - unchanged,
+            noise: LEAST,
+        },
         _ => Sample::relative(unchanged, changed, known),
     })
 }
@@ -269,7 +316,11 @@ mod tests {
             (&[-1], 1, 0, Verdict::PlainPays),
             (&[], -1, 0, Verdict::DoesNotPay),
         ] {
-            assert_eq!(verdict(errors, ms, bytes), expected, "{errors:?} {ms} {bytes}");
+            assert_eq!(
+                verdict(errors, ms, bytes),
+                expected,
+                "{errors:?} {ms} {bytes}"
+            );
         }
     }
 
@@ -279,7 +330,9 @@ mod tests {
         let dim = Sample::relative(0.01, 0.012, 0.0005);
         let bright = Sample::relative(10.0, 9.0, 0.0);
         let black = Sample::relative(0.0, 0.0, 0.0);
-        let over = |list: &[Sample]| Delta::over(&names.iter().zip(list.iter().copied()).collect::<Vec<_>>());
+        let over = |list: &[Sample]| {
+            Delta::over(&names.iter().zip(list.iter().copied()).collect::<Vec<_>>())
+        };
         let d = over(&[dim, bright, black]).unwrap();
         let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-9, "{a} is not {b}");
         near(d.change, (0.2 - 0.1) / 2.0);
@@ -289,7 +342,10 @@ mod tests {
         near(d.worst_noise, 0.05);
         assert_eq!(over(&[bright]).unwrap().sign(), -1);
         // A hundredth is no change, however quiet.
-        assert_eq!(over(&[Sample::relative(1.0, 1.009, 0.0)]).unwrap().sign(), 0);
+        assert_eq!(
+            over(&[Sample::relative(1.0, 1.009, 0.0)]).unwrap().sign(),
+            0
+        );
         assert_eq!(over(&[]), None);
     }
 }

@@ -68,12 +68,22 @@ pub fn compare(recorded: &Recorded, times: &Times, sha256: &str, tolerance: f64)
             (_, None) => Verdict::Gone,
         },
     };
-    let mut rows: Vec<Row> =
-        times.stage_rounds.iter().map(|(stage, now)| row(stage, recorded.stages.get(stage), Some(now))).collect();
-    let gone = recorded.stages.iter().filter(|(stage, _)| !times.stage_rounds.contains_key(*stage));
+    let mut rows: Vec<Row> = times
+        .stage_rounds
+        .iter()
+        .map(|(stage, now)| row(stage, recorded.stages.get(stage), Some(now)))
+        .collect();
+    let gone = recorded
+        .stages
+        .iter()
+        .filter(|(stage, _)| !times.stage_rounds.contains_key(*stage));
     rows.extend(gone.map(|(stage, before)| row(stage, Some(before), None)));
     rows.push(row("total", Some(&recorded.total), Some(&times.rounds)));
-    Compared { title: recorded.title(), rows, notes: notes(recorded, times, sha256) }
+    Compared {
+        title: recorded.title(),
+        rows,
+        notes: notes(recorded, times, sha256),
+    }
 }
 
 /// How the medians of some rounds stand to recorded ones, ms; `tolerance` is a part of the recorded time.
@@ -82,9 +92,17 @@ pub fn judge(recorded: &[f64], now: &[f64], tolerance: f64) -> Verdict {
     let beyond = |a: f64, b: f64| b > a * (1.0 + tolerance) && b - a > FLOOR_MS;
     if beyond(before, after) {
         let middle = spread(recorded.to_vec()).median;
-        return if after > middle { Verdict::Slower } else { Verdict::Noisy };
+        return if after > middle {
+            Verdict::Slower
+        } else {
+            Verdict::Noisy
+        };
     }
-    if beyond(after, before) { Verdict::Faster } else { Verdict::Same }
+    if beyond(after, before) {
+        Verdict::Faster
+    } else {
+        Verdict::Same
+    }
 }
 
 fn least(list: &[f64]) -> f64 {
@@ -96,15 +114,24 @@ fn notes(recorded: &Recorded, times: &Times, sha256: &str) -> Vec<String> {
     if recorded.scene_sha256 != sha256 {
         notes.push("the scene is not the recorded one: its content differs".to_string());
     }
-    let differing = recorded.params.iter().filter_map(|(name, before)| match times.stats.params.get(name) {
-        None => Some(format!("{name} (was {before}) is gone")),
-        Some(now) if plain(now) != *before => Some(format!("{name} was {before}, is {}", plain(now))),
-        Some(_) => None,
-    });
+    let differing =
+        recorded
+            .params
+            .iter()
+            .filter_map(|(name, before)| match times.stats.params.get(name) {
+                None => Some(format!("{name} (was {before}) is gone")),
+                Some(now) if plain(now) != *before => {
+                    Some(format!("{name} was {before}, is {}", plain(now)))
+                }
+                Some(_) => None,
+            });
     let differing: Vec<String> = differing.collect();
     notes.extend(differing.iter().take(MAX_NAMED).cloned());
     if differing.len() > MAX_NAMED {
-        notes.push(format!("{} more parameters differ", differing.len() - MAX_NAMED));
+        notes.push(format!(
+            "{} more parameters differ",
+            differing.len() - MAX_NAMED
+        ));
     }
     notes
 }
@@ -117,16 +144,32 @@ pub fn against_text(record: &Record, bench: &Bench, compared: &[Compared]) -> St
         bench.rounds, bench.frames.count, bench.frames.warmup
     );
     if record.device.driver != *driver {
-        let _ = writeln!(out, "note: the driver was {}, is {driver}", record.device.driver);
+        let _ = writeln!(
+            out,
+            "note: the driver was {}, is {driver}",
+            record.device.driver
+        );
     }
-    let names = compared.iter().flat_map(|c| &c.rows).map(|r| r.stage.chars().count());
+    let names = compared
+        .iter()
+        .flat_map(|c| &c.rows)
+        .map(|r| r.stage.chars().count());
     let width = names.max().unwrap_or(0) + 2;
     for Compared { title, rows, notes } in compared {
-        let _ = writeln!(out, "\n{title}\n{:width$}{:>10}{:>10}{:>8}", "", "recorded", "now", "ratio");
+        let _ = writeln!(
+            out,
+            "\n{title}\n{:width$}{:>10}{:>10}{:>8}",
+            "", "recorded", "now", "ratio"
+        );
         for row in rows {
             let ms = |value: Option<f64>| value.map_or("-".into(), |ms| format!("{ms:.3}"));
             let ratio = row.ratio().map_or("-".into(), |r| format!("{r:.2}"));
-            let line = format!("{:width$}{:>10}{:>10}{ratio:>8}", row.stage, ms(row.recorded), ms(row.now));
+            let line = format!(
+                "{:width$}{:>10}{:>10}{ratio:>8}",
+                row.stage,
+                ms(row.recorded),
+                ms(row.now)
+            );
             let _ = writeln!(out, "{line}{}", word(row.verdict));
         }
         for note in notes {
@@ -150,7 +193,10 @@ fn word(verdict: Verdict) -> &'static str {
 impl Row {
     /// Today's time in recorded ones.
     pub fn ratio(&self) -> Option<f64> {
-        self.recorded.zip(self.now).filter(|(before, _)| *before > 0.0).map(|(before, now)| now / before)
+        self.recorded
+            .zip(self.now)
+            .filter(|(before, _)| *before > 0.0)
+            .map(|(before, now)| now / before)
     }
 }
 
@@ -161,7 +207,12 @@ pub fn slower(compared: &[Compared]) -> Option<String> {
         None => row.stage.clone(),
     };
     let of = |c: &Compared| {
-        let list: Vec<String> = c.rows.iter().filter(|r| r.verdict == Verdict::Slower).map(line).collect();
+        let list: Vec<String> = c
+            .rows
+            .iter()
+            .filter(|r| r.verdict == Verdict::Slower)
+            .map(line)
+            .collect();
         (!list.is_empty()).then(|| format!("{} ({})", list.join(", "), c.title))
     };
     let list: Vec<String> = compared.iter().filter_map(of).collect();

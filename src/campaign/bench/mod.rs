@@ -6,7 +6,9 @@ mod charts;
 mod record;
 mod tables;
 
-pub use against::{Compared, FLOOR_MS, Row, Verdict, against_text, compare, judge, percent, slower};
+pub use against::{
+    Compared, FLOOR_MS, Row, Verdict, against_text, compare, judge, percent, slower,
+};
 pub use charts::charts;
 pub use record::{RECORD_SCHEMA, Record, Recorded, check_record, record_file};
 pub use tables::{csv, text};
@@ -91,7 +93,10 @@ pub fn bench(
     rounds: usize,
     frames: Frames,
 ) -> Result<Bench, LabError> {
-    runner.tell(Progress::Begins { todo: points.len() * rounds, before: 0 });
+    runner.tell(Progress::Begins {
+        todo: points.len() * rounds,
+        before: 0,
+    });
     let configuration = |p: &SweepPoint| Configuration {
         labels: p.labels.iter().cloned().collect(),
         size: p.experiment.size,
@@ -103,13 +108,27 @@ pub fn bench(
     let mut turns: Vec<Turns> = points.iter().map(|_| Turns::default()).collect();
     for round in 0..rounds {
         let mut last: Option<ReusableParts> = None;
-        for ((point, configuration), turns) in points.iter().zip(&mut configurations).zip(&mut turns) {
+        for ((point, configuration), turns) in
+            points.iter().zip(&mut configurations).zip(&mut turns)
+        {
             if configuration.error.is_none() {
                 let Runner { lab, warm, .. } = &mut *runner;
                 let loaded = warm.graph(&lab.home, &point.experiment.graph)?;
                 let reuse = turns.left.as_ref().or(last.as_ref());
-                match timed(lab, loaded, &point.experiment, &point.scene, frames, &[], reuse) {
-                    Ok(Timed { mut session, times, warmup }) => {
+                match timed(
+                    lab,
+                    loaded,
+                    &point.experiment,
+                    &point.scene,
+                    frames,
+                    &[],
+                    reuse,
+                ) {
+                    Ok(Timed {
+                        mut session,
+                        times,
+                        warmup,
+                    }) => {
                         let warmup = turns.warmup.map_or(warmup, |least| least.min(warmup));
                         turns.warmup = Some(warmup);
                         turns.rounds.push(times);
@@ -117,8 +136,16 @@ pub fn bench(
                             let warnings = session.failed_checks()?;
                             let all = turns.rounds.concat();
                             let name = &point.experiment.name;
-                            let stats = stats::collect(&lab.gpu.info, name, &session, &all, warmup, warnings);
-                            configuration.times = Some(times_of(&session, stats, &all, &turns.rounds));
+                            let stats = stats::collect(
+                                &lab.gpu.info,
+                                name,
+                                &session,
+                                &all,
+                                warmup,
+                                warnings,
+                            );
+                            configuration.times =
+                                Some(times_of(&session, stats, &all, &turns.rounds));
                         }
                         // The next configuration's first turn starts from this one's pipelines and scene.
                         last = (round == 0).then(|| session.share());
@@ -132,11 +159,23 @@ pub fn bench(
     }
     runner.tell(Progress::Ends);
     let device = DeviceStats::of(&runner.lab.gpu.info);
-    Ok(Bench { schema: SCHEMA.into(), device, rounds, frames, names, configurations })
+    Ok(Bench {
+        schema: SCHEMA.into(),
+        device,
+        rounds,
+        frames,
+        names,
+        configurations,
+    })
 }
 
 /// What the frames of all rounds, and of each, say.
-fn times_of(session: &Session, stats: Stats, all: &[FrameTimes], rounds: &[Vec<FrameTimes>]) -> Times {
+fn times_of(
+    session: &Session,
+    stats: Stats,
+    all: &[FrameTimes],
+    rounds: &[Vec<FrameTimes>],
+) -> Times {
     let mut stage_rounds: IndexMap<String, Vec<f64>> = IndexMap::new();
     for times in rounds {
         for (stage, spread) in stages(session, times) {
@@ -144,7 +183,12 @@ fn times_of(session: &Session, stats: Stats, all: &[FrameTimes], rounds: &[Vec<F
         }
     }
     let total = |times: &Vec<FrameTimes>| spread(times.iter().map(|t| t.gpu_ms).collect()).median;
-    Times { stats, stages: stages(session, all), rounds: rounds.iter().map(total).collect(), stage_rounds }
+    Times {
+        stats,
+        stages: stages(session, all),
+        rounds: rounds.iter().map(total).collect(),
+        stage_rounds,
+    }
 }
 
 /// Times of the stages, in the order of the graph.
@@ -152,10 +196,14 @@ fn stages(session: &Session, times: &[FrameTimes]) -> IndexMap<String, Spread> {
     let mut all: IndexMap<String, Vec<f64>> = IndexMap::new();
     for (frame, time) in times.iter().enumerate() {
         for (number, ms) in &time.passes {
-            let values = all.entry(session.graph.passes[*number].value.stage().to_string()).or_default();
+            let values = all
+                .entry(session.graph.passes[*number].value.stage().to_string())
+                .or_default();
             values.resize(frame + 1, 0.0);
             values[frame] += ms;
         }
     }
-    all.into_iter().map(|(stage, values)| (stage, spread(values))).collect()
+    all.into_iter()
+        .map(|(stage, values)| (stage, spread(values)))
+        .collect()
 }

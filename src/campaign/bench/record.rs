@@ -66,7 +66,11 @@ pub fn record_file(path: &Path, device: &str) -> PathBuf {
     if path.extension().is_some_and(|e| e == "json") {
         return path.to_path_buf();
     }
-    let letters: String = device.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { ' ' }).collect();
+    let letters: String = device
+        .to_lowercase()
+        .chars()
+        .map(|c| if c.is_alphanumeric() { c } else { ' ' })
+        .collect();
     path.join(letters.split_whitespace().collect::<Vec<_>>().join("-") + ".json")
 }
 
@@ -93,10 +97,14 @@ impl Record {
         let mut configurations = Vec::new();
         for (configuration, point) in bench.configurations.iter().zip(points) {
             let Some(times) = &configuration.times else {
-                return Err(LabError::Request("nothing was recorded, as a configuration failed".into()));
+                return Err(LabError::Request(
+                    "nothing was recorded, as a configuration failed".into(),
+                ));
             };
             if times.rounds.iter().any(|ms| *ms <= 0.0) {
-                return Err(LabError::Request("nothing was recorded: this device measures no times".into()));
+                return Err(LabError::Request(
+                    "nothing was recorded: this device measures no times".into(),
+                ));
             }
             configurations.push(Recorded::of(point, times, home));
         }
@@ -116,34 +124,51 @@ impl Record {
     /// No such file, or not what `conelab bench --record` writes.
     pub fn read(path: &Path) -> Result<Record, LabError> {
         let wrong = |why: String| LabError::from(FileError::content(path, why));
-        let record: Record = read_json(path, MAX_BYTES)
-            .map_err(|e| wrong(format!("{e}; give a file that `conelab bench ... --record FILE` wrote")))?;
+        let record: Record = read_json(path, MAX_BYTES).map_err(|e| {
+            wrong(format!(
+                "{e}; give a file that `conelab bench ... --record FILE` wrote"
+            ))
+        })?;
         record.check().map_err(wrong)?;
         Ok(record)
     }
 
     fn check(&self) -> Result<(), String> {
         if self.schema != RECORD_SCHEMA {
-            return Err(format!("its schema is '{}', this program reads '{RECORD_SCHEMA}'", self.schema));
+            return Err(format!(
+                "its schema is '{}', this program reads '{RECORD_SCHEMA}'",
+                self.schema
+            ));
         }
         let Frames { warmup, count } = self.frames;
         let most = self.rounds.max(count).max(warmup);
         if self.rounds == 0 || count == 0 || most > MAX_FRAMES {
-            return Err(format!("rounds and frames must be 1 to {MAX_FRAMES}, and no more of warm-up"));
+            return Err(format!(
+                "rounds and frames must be 1 to {MAX_FRAMES}, and no more of warm-up"
+            ));
         }
         if self.configurations.is_empty() || self.configurations.len() > MAX_CONFIGURATIONS {
             let found = self.configurations.len();
-            return Err(format!("it has {found} configurations and not 1 to {MAX_CONFIGURATIONS}"));
+            return Err(format!(
+                "it has {found} configurations and not 1 to {MAX_CONFIGURATIONS}"
+            ));
         }
         let (name, driver) = (&self.device.name, &self.device.driver);
-        let texts = self.configurations.iter().flat_map(Recorded::texts).chain([name, driver]);
+        let texts = self
+            .configurations
+            .iter()
+            .flat_map(Recorded::texts)
+            .chain([name, driver]);
         if let Some(text) = texts.into_iter().find(|t| t.chars().any(char::is_control)) {
             return Err(format!("{text:?} has characters that cannot be printed"));
         }
         self.configurations
             .iter()
             .enumerate()
-            .try_for_each(|(i, c)| c.check().map_err(|why| format!("configuration {}: {why}", i + 1)))
+            .try_for_each(|(i, c)| {
+                c.check()
+                    .map_err(|why| format!("configuration {}: {why}", i + 1))
+            })
     }
 
     /// Whether its times can be compared with those of a device.
@@ -164,7 +189,11 @@ impl Record {
 
 impl Recorded {
     fn of(point: &SweepPoint, times: &Times, home: &Workspace) -> Recorded {
-        let SweepPoint { experiment, subject, .. } = point;
+        let SweepPoint {
+            experiment,
+            subject,
+            ..
+        } = point;
         let file = experiment.sources.paths().next().unwrap_or(Path::new(""));
         let scene = match Path::new(&experiment.scene).is_file() {
             true => from_root(home, Path::new(&experiment.scene)),
@@ -186,16 +215,32 @@ impl Recorded {
             settings.insert("graph".into(), format!("{:?}", experiment.graph));
         }
         // What does not come from the experiment's file was set by the command line.
-        let set = experiment.params.iter().filter(|(name, _)| name.at.file > 0);
+        let set = experiment
+            .params
+            .iter()
+            .filter(|(name, _)| name.at.file > 0);
         settings.extend(set.map(|(name, text)| (name.value.clone(), text.clone())));
-        let rounded = |list: &[f64]| list.iter().map(|ms| (ms * 1e4).round() / 1e4).collect::<Vec<f64>>();
+        let rounded = |list: &[f64]| {
+            list.iter()
+                .map(|ms| (ms * 1e4).round() / 1e4)
+                .collect::<Vec<f64>>()
+        };
         Recorded {
             experiment: from_root(home, file),
             settings,
             scene_sha256: subject.sha256.clone(),
-            params: times.stats.params.iter().map(|(name, value)| (name.clone(), plain(value))).collect(),
+            params: times
+                .stats
+                .params
+                .iter()
+                .map(|(name, value)| (name.clone(), plain(value)))
+                .collect(),
             total: rounded(&times.rounds),
-            stages: times.stage_rounds.iter().map(|(name, rounds)| (name.clone(), rounded(rounds))).collect(),
+            stages: times
+                .stage_rounds
+                .iter()
+                .map(|(name, rounds)| (name.clone(), rounded(rounds)))
+                .collect(),
         }
     }
 
@@ -206,7 +251,9 @@ impl Recorded {
                 return Err(format!("'{name}' has no times"));
             }
             if let Some(ms) = list.iter().find(|ms| !ms.is_finite() || **ms < 0.0) {
-                return Err(format!("'{name}' took {ms} ms: times must be finite and not negative"));
+                return Err(format!(
+                    "'{name}' took {ms} ms: times must be finite and not negative"
+                ));
             }
         }
         match self.total.iter().find(|ms| **ms == 0.0) {
@@ -219,7 +266,10 @@ impl Recorded {
     fn texts(&self) -> impl Iterator<Item = &String> {
         let settings = self.settings.iter().flat_map(|(name, value)| [name, value]);
         let params = self.params.iter().flat_map(|(name, value)| [name, value]);
-        settings.chain(params).chain(self.stages.keys()).chain([&self.experiment, &self.scene_sha256])
+        settings
+            .chain(params)
+            .chain(self.stages.keys())
+            .chain([&self.experiment, &self.scene_sha256])
     }
 
     /// What it is, for people: experiment, scene, size, and what else is set.
@@ -228,16 +278,25 @@ impl Recorded {
         let mut parts = vec![stem(&self.experiment)];
         parts.extend(said("scene").map(stem));
         parts.extend(said("size").map(|s| s.replace(['(', ')', ' '], "").replace(',', "x")));
-        let others = self.settings.iter().filter(|(name, _)| !FIXED.contains(&name.as_str()));
+        let others = self
+            .settings
+            .iter()
+            .filter(|(name, _)| !FIXED.contains(&name.as_str()));
         parts.extend(others.map(|(name, value)| format!("{name} {value}")));
         parts.join(", ")
     }
 
     /// Its values by name, for tables.
     pub fn labels(&self) -> Labels {
-        let shown = self.settings.iter().filter(|(name, _)| *name != "camera" && *name != "time");
+        let shown = self
+            .settings
+            .iter()
+            .filter(|(name, _)| *name != "camera" && *name != "time");
         let shown = shown.map(|(name, value)| (name.clone(), value.trim_matches('"').to_string()));
-        [("experiment".to_string(), stem(&self.experiment))].into_iter().chain(shown).collect()
+        [("experiment".to_string(), stem(&self.experiment))]
+            .into_iter()
+            .chain(shown)
+            .collect()
     }
 
     /// Its experiment's file.
@@ -251,10 +310,21 @@ impl Recorded {
     /// Mistakes of the file, and settings that are none; unknown parameters are found with the graph.
     pub fn experiment(&self, home: &Workspace) -> Result<Experiment, Vec<Diagnostic>> {
         let mut experiment = Experiment::read(&self.file(home))?;
-        let (text, settings) = lines(self.settings.iter().map(|(name, text)| (name.as_str(), text.as_str())), ": ");
-        experiment.sources.add(format!("settings of {}", self.title()).as_ref(), text);
+        let (text, settings) = lines(
+            self.settings
+                .iter()
+                .map(|(name, text)| (name.as_str(), text.as_str())),
+            ": ",
+        );
+        experiment
+            .sources
+            .add(format!("settings of {}", self.title()).as_ref(), text);
         let errors = apply(&mut experiment, &settings, &home.root);
-        if errors.is_empty() { Ok(experiment) } else { Err(errors) }
+        if errors.is_empty() {
+            Ok(experiment)
+        } else {
+            Err(errors)
+        }
     }
 }
 
@@ -266,14 +336,21 @@ const FIXED: [&str; 4] = ["scene", "camera", "size", "time"];
 fn from_root(home: &Workspace, file: &Path) -> String {
     let whole = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
     let (root, file) = (whole(&home.root), whole(file));
-    file.strip_prefix(root).unwrap_or(&file).to_string_lossy().into_owned()
+    file.strip_prefix(root)
+        .unwrap_or(&file)
+        .to_string_lossy()
+        .into_owned()
 }
 
 fn stem(path: &str) -> String {
-    Path::new(path).file_stem().map_or(path.to_string(), |s| s.to_string_lossy().into_owned())
+    Path::new(path)
+        .file_stem()
+        .map_or(path.to_string(), |s| s.to_string_lossy().into_owned())
 }
 
 /// A value as text, names without quotes.
 pub(super) fn plain(value: &serde_json::Value) -> String {
-    value.as_str().map_or_else(|| value.to_string(), String::from)
+    value
+        .as_str()
+        .map_or_else(|| value.to_string(), String::from)
 }

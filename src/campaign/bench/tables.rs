@@ -25,34 +25,65 @@ impl Row<'_> {
     }
 
     fn totals(&self) -> Vec<Option<String>> {
-        self.cells.iter().map(|c| Some(shown((*c)?.times.as_ref()?.stats.total_gpu_ms))).collect()
+        self.cells
+            .iter()
+            .map(|c| Some(shown((*c)?.times.as_ref()?.stats.total_gpu_ms)))
+            .collect()
     }
 }
 
 /// Name and values of what the columns vary: the first setting that is no size and no experiment.
 pub(super) fn columns(bench: &Bench) -> (String, Vec<String>) {
-    let name = bench.names.iter().find(|n| *n != "size" && *n != "experiment").cloned().unwrap_or_default();
-    let values: IndexSet<String> = bench.configurations.iter().map(|c| cell(c.labels.get(&name))).collect();
+    let name = bench
+        .names
+        .iter()
+        .find(|n| *n != "size" && *n != "experiment")
+        .cloned()
+        .unwrap_or_default();
+    let values: IndexSet<String> = bench
+        .configurations
+        .iter()
+        .map(|c| cell(c.labels.get(&name)))
+        .collect();
     (name, values.into_iter().collect())
 }
 
 pub(super) fn rows(bench: &Bench) -> Vec<Row<'_>> {
     let (column, values) = columns(bench);
     let varies = |name: &String| {
-        let values: IndexSet<_> = bench.configurations.iter().map(|c| c.labels.get(name)).collect();
+        let values: IndexSet<_> = bench
+            .configurations
+            .iter()
+            .map(|c| c.labels.get(name))
+            .collect();
         values.len() > 1
     };
     type Cells<'a> = Vec<Option<&'a Configuration>>;
     let mut rows: IndexMap<(String, (u32, u32)), Cells> = IndexMap::new();
     for c in &bench.configurations {
-        let title = labelled(c.labels.iter().filter(|(n, _)| **n != column && *n != "size" && varies(n)));
-        let title = if title.is_empty() { c.experiment.clone() } else { title };
-        let cells = rows.entry((title, c.size)).or_insert_with(|| vec![None; values.len()]);
-        if let Some(at) = values.iter().position(|v| *v == cell(c.labels.get(&column))) {
+        let title = labelled(
+            c.labels
+                .iter()
+                .filter(|(n, _)| **n != column && *n != "size" && varies(n)),
+        );
+        let title = if title.is_empty() {
+            c.experiment.clone()
+        } else {
+            title
+        };
+        let cells = rows
+            .entry((title, c.size))
+            .or_insert_with(|| vec![None; values.len()]);
+        if let Some(at) = values
+            .iter()
+            .position(|v| *v == cell(c.labels.get(&column)))
+        {
             cells[at] = Some(c);
         }
     }
-    rows.into_iter().map(|((title, size), cells)| Row { title, size, cells }).collect()
+    rows.into_iter()
+        .map(|((title, size), cells)| Row { title, size, cells })
+        .collect()
 }
 
 /// The tables for people: the stages of each configuration at the last size, the totals by size, and the totals of every
@@ -62,10 +93,20 @@ pub fn text(bench: &Bench) -> String {
     let rows = rows(bench);
     let mut out = format!(
         "{} ({}), {} rounds of {} frames after at least {} of warm-up; GPU ms, median (95 %)\n",
-        bench.device.name, bench.device.driver, bench.rounds, bench.frames.count, bench.frames.warmup
+        bench.device.name,
+        bench.device.driver,
+        bench.rounds,
+        bench.frames.count,
+        bench.frames.warmup
     );
-    let titles = rows.iter().map(|r| r.title.chars().count() + "1920x1080 ".len());
-    let width = titles.chain(rows.iter().flat_map(stages).map(|s| s.chars().count())).max().unwrap_or(0) + 2;
+    let titles = rows
+        .iter()
+        .map(|r| r.title.chars().count() + "1920x1080 ".len());
+    let width = titles
+        .chain(rows.iter().flat_map(stages).map(|s| s.chars().count()))
+        .max()
+        .unwrap_or(0)
+        + 2;
     let header = |out: &mut String, title: &str| {
         let _ = writeln!(out, "\n{title}");
         let _ = write!(out, "{column:<width$}");
@@ -74,14 +115,25 @@ pub fn text(bench: &Bench) -> String {
     };
     let line = |out: &mut String, title: &str, cells: &[Option<String>]| {
         let _ = write!(out, "{title:<width$}");
-        out.extend(cells.iter().map(|c| format!("{:>22}", c.as_deref().unwrap_or("-"))));
+        out.extend(
+            cells
+                .iter()
+                .map(|c| format!("{:>22}", c.as_deref().unwrap_or("-"))),
+        );
         out.push('\n');
     };
     let last = rows.iter().map(Row::pixels).max().unwrap_or(0);
     for row in rows.iter().filter(|r| r.pixels() == last) {
-        header(&mut out, &format!("{} at {}x{}", row.title, row.size.0, row.size.1));
+        header(
+            &mut out,
+            &format!("{} at {}x{}", row.title, row.size.0, row.size.1),
+        );
         for stage in stages(row) {
-            let cells: Vec<_> = row.cells.iter().map(|c| Some(shown(stage_of((*c)?, &stage)?))).collect();
+            let cells: Vec<_> = row
+                .cells
+                .iter()
+                .map(|c| Some(shown(stage_of((*c)?, &stage)?)))
+                .collect();
             line(&mut out, &stage, &cells);
         }
         line(&mut out, "total", &row.totals());
@@ -97,10 +149,22 @@ pub fn text(bench: &Bench) -> String {
         .filter(|(first, row)| first.title != row.title)
         .collect();
     if !compared.is_empty() {
-        header(&mut out, "total, times that of the first at its size: median of the rounds (least to most)");
+        header(
+            &mut out,
+            "total, times that of the first at its size: median of the rounds (least to most)",
+        );
         for (first, row) in compared {
-            let cells: Vec<_> = first.cells.iter().zip(&row.cells).map(|(a, b)| ratio((*a)?, (*b)?)).collect();
-            line(&mut out, &format!("{}x{} {}", row.size.0, row.size.1, row.title), &cells);
+            let cells: Vec<_> = first
+                .cells
+                .iter()
+                .zip(&row.cells)
+                .map(|(a, b)| ratio((*a)?, (*b)?))
+                .collect();
+            line(
+                &mut out,
+                &format!("{}x{} {}", row.size.0, row.size.1, row.title),
+                &cells,
+            );
         }
     }
     for failed in bench.configurations.iter().filter(|c| c.error.is_some()) {
@@ -126,7 +190,12 @@ fn shown(spread: Spread) -> String {
 
 fn ratio(first: &Configuration, other: &Configuration) -> Option<String> {
     let (a, b) = (&first.times.as_ref()?.rounds, &other.times.as_ref()?.rounds);
-    let ratios: Vec<f64> = a.iter().zip(b).filter(|(a, _)| **a > 0.0).map(|(a, b)| b / a).collect();
+    let ratios: Vec<f64> = a
+        .iter()
+        .zip(b)
+        .filter(|(a, _)| **a > 0.0)
+        .map(|(a, b)| b / a)
+        .collect();
     let most = ratios.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let s = crate::results::stats::spread(ratios);
     Some(format!("{:.2} ({:.2} to {:.2})", s.median, s.min, most))
@@ -143,12 +212,27 @@ pub fn csv(bench: &Bench) -> Result<String, LabError> {
             rows.push((c, "total", "total", None));
         }
         let Some(times) = &c.times else { continue };
-        rows.extend(times.stats.passes.iter().map(|p| (c, "pass", p.name.as_str(), Some(p.gpu_ms))));
-        rows.extend(times.stages.iter().map(|(stage, spread)| (c, "stage", stage.as_str(), Some(*spread))));
+        rows.extend(
+            times
+                .stats
+                .passes
+                .iter()
+                .map(|p| (c, "pass", p.name.as_str(), Some(p.gpu_ms))),
+        );
+        rows.extend(
+            times
+                .stages
+                .iter()
+                .map(|(stage, spread)| (c, "stage", stage.as_str(), Some(*spread))),
+        );
         rows.push((c, "total", "total", Some(times.stats.total_gpu_ms)));
     }
     let mut table = Table::new(&rows);
-    for name in bench.names.iter().filter(|n| *n != "size" && *n != "experiment") {
+    for name in bench
+        .names
+        .iter()
+        .filter(|n| *n != "size" && *n != "experiment")
+    {
         table.column(name, |r| cell(r.0.labels.get(name)));
     }
     table.column("experiment", |r| r.0.experiment.clone());

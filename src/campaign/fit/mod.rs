@@ -18,9 +18,16 @@ use crate::lab::LabError;
 /// # Errors
 /// An unknown parameter, a value that it does not take.
 pub fn axes(graph: &Graph, given: &[Axis]) -> Result<Vec<Axis>, LabError> {
-    let axes = if given.is_empty() { graph.fit.clone() } else { given.to_vec() };
+    let axes = if given.is_empty() {
+        graph.fit.clone()
+    } else {
+        given.to_vec()
+    };
     if axes.is_empty() {
-        let message = format!("graph '{}' has no `fit`: say what to vary with --vary NAME=VALUE,VALUE", graph.name);
+        let message = format!(
+            "graph '{}' has no `fit`: say what to vary with --vary NAME=VALUE,VALUE",
+            graph.name
+        );
         return Err(LabError::Request(message));
     }
     for (name, values) in &axes {
@@ -40,9 +47,16 @@ fn start(axes: &[Axis], params: &Params) -> Vec<usize> {
             let mut tried = params.clone();
             tried.set(name, text).ok()?;
             let value = &tried.values[tried.index(name)?];
-            if value == own { Some(0.0) } else { Some((value.number()? - own.number()?).abs()) }
+            if value == own {
+                Some(0.0)
+            } else {
+                Some((value.number()? - own.number()?).abs())
+            }
         };
-        let near = values.iter().enumerate().filter_map(|(i, v)| Some((i, distance(v)?)));
+        let near = values
+            .iter()
+            .enumerate()
+            .filter_map(|(i, v)| Some((i, distance(v)?)));
         near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
     };
     axes.iter().map(|axis| place(axis).unwrap_or(0)).collect()

@@ -32,7 +32,10 @@ impl Sum {
                     sums[place[axis]].0 += left + effects[axis][place[axis]];
                     sums[place[axis]].1 += 1.0;
                 }
-                let new: Vec<f64> = sums.iter().map(|(sum, count)| sum / (count + DOUBT)).collect();
+                let new: Vec<f64> = sums
+                    .iter()
+                    .map(|(sum, count)| sum / (count + DOUBT))
+                    .collect();
                 for ((place, _), left) in trials.iter().zip(&mut left) {
                     *left += effects[axis][place[axis]] - new[place[axis]];
                 }
@@ -41,7 +44,9 @@ impl Sum {
         }
         // A value that was never tried is like the nearest that was.
         for (axis, effects) in effects.iter_mut().enumerate() {
-            let seen: Vec<usize> = (0..sizes[axis]).filter(|i| trials.iter().any(|t| t.0[axis] == *i)).collect();
+            let seen: Vec<usize> = (0..sizes[axis])
+                .filter(|i| trials.iter().any(|t| t.0[axis] == *i))
+                .collect();
             let known = effects.clone();
             for (i, effect) in effects.iter_mut().enumerate() {
                 if let Some(nearest) = seen.iter().min_by_key(|s| s.abs_diff(i)) {
@@ -78,7 +83,10 @@ impl Walk<'_> {
     fn go(&mut self, place: &mut Vec<usize>, cost: f64, bounded: f64) {
         self.steps += 1;
         let axis = place.len();
-        let hopeless = self.best.as_ref().is_some_and(|b| cost + self.least_cost[axis] >= b.0);
+        let hopeless = self
+            .best
+            .as_ref()
+            .is_some_and(|b| cost + self.least_cost[axis] >= b.0);
         if self.steps > MOST_STEPS || hopeless || bounded + self.least_bounded[axis] > self.bound {
             return;
         }
@@ -93,7 +101,10 @@ impl Walk<'_> {
         order.sort_by(|a, b| self.cost.effects[axis][*a].total_cmp(&self.cost.effects[axis][*b]));
         for value in order {
             place.push(value);
-            let (more, further) = (self.cost.effects[axis][value], self.bounded.effects[axis][value]);
+            let (more, further) = (
+                self.cost.effects[axis][value],
+                self.bounded.effects[axis][value],
+            );
             self.go(place, cost + more, bounded + further);
             place.pop();
         }
@@ -107,11 +118,25 @@ pub(super) fn propose(
     tried: &[(&[usize], Trial)],
     bound: f64,
 ) -> Option<Vec<usize>> {
-    let of = |value: fn(&Trial) -> f64| -> Vec<(&[usize], f64)> { tried.iter().map(|(p, t)| (*p, value(t))).collect() };
-    let (cost, bounded) = (Sum::of(sizes, &of(|t| t.cost)), Sum::of(sizes, &of(|t| t.bounded)));
+    let of = |value: fn(&Trial) -> f64| -> Vec<(&[usize], f64)> {
+        tried.iter().map(|(p, t)| (*p, value(t))).collect()
+    };
+    let (cost, bounded) = (
+        Sum::of(sizes, &of(|t| t.cost)),
+        Sum::of(sizes, &of(|t| t.bounded)),
+    );
     let (least_cost, least_bounded) = (cost.least(), bounded.least());
     let start = (cost.mean, bounded.mean);
-    let mut walk = Walk { cost, bounded, least_cost, least_bounded, bound, known, best: None, steps: 0 };
+    let mut walk = Walk {
+        cost,
+        bounded,
+        least_cost,
+        least_bounded,
+        bound,
+        known,
+        best: None,
+        steps: 0,
+    };
     walk.go(&mut Vec::new(), start.0, start.1);
     walk.best.map(|b| b.1)
 }
@@ -125,22 +150,30 @@ mod tests {
         let sizes = [4, 3, 5];
         let trial = |p: &[usize]| Trial {
             cost: [1.0, 2.0, 4.0, 13.0][p[0]] + p[1] as f64 + 0.3 * p[2] as f64,
-            bounded: 0.1 / (1.0 + p[0] as f64) + [0.05, 0.02, 0.01][p[1]] + 0.01 * (4 - p[2]) as f64,
+            bounded: 0.1 / (1.0 + p[0] as f64)
+                + [0.05, 0.02, 0.01][p[1]]
+                + 0.01 * (4 - p[2]) as f64,
         };
         // One line along each axis.
         let mut places = vec![vec![0, 0, 0]];
         places.extend((1..4).map(|i| vec![i, 0, 0]));
         places.extend((1..3).map(|i| vec![0, i, 0]));
         places.extend((1..5).map(|i| vec![0, 0, i]));
-        let known: HashMap<Vec<usize>, Option<Trial>> = places.iter().map(|p| (p.clone(), Some(trial(p)))).collect();
+        let known: HashMap<Vec<usize>, Option<Trial>> =
+            places.iter().map(|p| (p.clone(), Some(trial(p)))).collect();
         let tried: Vec<(&[usize], Trial)> = places.iter().map(|p| (&p[..], trial(p))).collect();
         let all = || (0..60).map(|i| vec![i % 4, i / 4 % 3, i / 12]);
         let bound = 0.095;
         let within = all().filter(|p| trial(p).bounded <= bound && !known.contains_key(p));
-        let best = within.min_by(|a, b| trial(a).cost.total_cmp(&trial(b).cost)).unwrap();
+        let best = within
+            .min_by(|a, b| trial(a).cost.total_cmp(&trial(b).cost))
+            .unwrap();
         let found = propose(&sizes, &known, &tried, bound).unwrap();
         let (found, best) = (trial(&found), trial(&best));
-        assert!(found.cost <= 1.2 * best.cost && found.bounded < 1.2 * bound, "{found:?} for {best:?}");
+        assert!(
+            found.cost <= 1.2 * best.cost && found.bounded < 1.2 * bound,
+            "{found:?} for {best:?}"
+        );
         assert!(propose(&sizes, &known, &tried, -1.0).is_none());
     }
 }

@@ -7,7 +7,9 @@ use crate::campaign::points::{OpenScene, SweepPoint};
 use crate::campaign::record::first_line;
 use crate::campaign::runner::{Open, Progress, Runner};
 use crate::campaign::settings::Axis;
-use crate::campaign::sweep::{Manifest, ManifestPoint, Measuring, PointRecord, points_in, write_table};
+use crate::campaign::sweep::{
+    Manifest, ManifestPoint, Measuring, PointRecord, points_in, write_table,
+};
 use crate::experiment::Experiment;
 use crate::graph::param::Params;
 use crate::lab::{LabError, parts_of};
@@ -43,8 +45,14 @@ impl Goal {
 
     fn trial(self, ms: f64, error: f64) -> Trial {
         match self {
-            Goal::Error(_) => Trial { cost: ms, bounded: error },
-            Goal::Time(_) => Trial { cost: error, bounded: ms },
+            Goal::Error(_) => Trial {
+                cost: ms,
+                bounded: error,
+            },
+            Goal::Time(_) => Trial {
+                cost: error,
+                bounded: ms,
+            },
         }
     }
 }
@@ -97,8 +105,17 @@ pub fn run(
     on_progress: &mut dyn FnMut(Progress),
 ) -> Result<Fitted, LabError> {
     let mut runner = Runner::open(open, open_scene, on_progress)?;
-    let Request { experiment, axes, part, .. } = *request;
-    let graph = runner.warm.graph(&runner.lab.home, &experiment.graph)?.graph.clone();
+    let Request {
+        experiment,
+        axes,
+        part,
+        ..
+    } = *request;
+    let graph = runner
+        .warm
+        .graph(&runner.lab.home, &experiment.graph)?
+        .graph
+        .clone();
     let measuring = Measuring {
         frames: request.frames,
         bounces: &[request.bounces],
@@ -108,26 +125,39 @@ pub fn run(
     let first = start(axes, &experiment.params_over(&graph.params)?);
     let begin = point(&mut runner, request, &first)?;
     let references = measuring.references(&mut runner, &begin)?;
-    let known = references.first().and_then(|(_, reference)| reference.parts.get(part));
+    let known = references
+        .first()
+        .and_then(|(_, reference)| reference.parts.get(part));
     let parts = parts_of(&graph);
     let Some(known) = known.filter(|_| parts.iter().any(|p| p.name == part)) else {
         let all: Vec<&str> = parts.iter().map(|p| p.name.as_str()).collect();
-        return Err(LabError::Request(format!("no part '{part}'; there are {}", all.join(", "))));
+        return Err(LabError::Request(format!(
+            "no part '{part}'; there are {}",
+            all.join(", ")
+        )));
     };
     if let Goal::Error(bound) = request.goal
         && request.metric.within(bound, known.noise)
     {
-        let message = format!("warning: an error of {bound} is not told from the reference's noise: raise --spp");
+        let message = format!(
+            "warning: an error of {bound} is not told from the reference's noise: raise --spp"
+        );
         runner.tell(Progress::Note(message));
     }
     let folder = points_in(&request.folder);
     folder.clean(&["points", "pictures", "errors", "references"]);
     let mut points: Vec<ManifestPoint> = Vec::new();
     let sizes: Vec<usize> = axes.iter().map(|a| a.1.len()).collect();
-    let limits =
-        Limits { bound: request.goal.bound(), evaluations: request.evaluations, least_gain: request.least_gain };
+    let limits = Limits {
+        bound: request.goal.bound(),
+        evaluations: request.evaluations,
+        least_gain: request.least_gain,
+    };
     let mut refused = String::new();
-    runner.tell(Progress::Begins { todo: request.evaluations, before: 0 });
+    runner.tell(Progress::Begins {
+        todo: request.evaluations,
+        before: 0,
+    });
     let found = search(&sizes, &first, limits, &mut |place| {
         let tried = point(&mut runner, request, place)?;
         // Times of another device say nothing here.
@@ -136,7 +166,8 @@ pub fn run(
             let record = measuring.kept(runner, &folder, point)?;
             Ok(record.filter(|r| r.device == here && scored(r, request)))
         };
-        let mut measured = |runner: &mut Runner, point: &SweepPoint| measuring.measured(runner, point);
+        let mut measured =
+            |runner: &mut Runner, point: &SweepPoint| measuring.measured(runner, point);
         let record = runner.one(&folder, &tried, &mut kept, &mut measured)?;
         points.push(ManifestPoint::of(&tried));
         let (trial, why) = quantities(&record, request);
@@ -145,50 +176,95 @@ pub fn run(
             Some((ms, error)) => format!("{ms:9.3} ms {error:11.4e}"),
             None => format!("cannot be run: {refused}"),
         };
-        runner.tell(Progress::Tried(format!("{:4} {what}  {}", points.len(), names(axes, place))));
+        runner.tell(Progress::Tried(format!(
+            "{:4} {what}  {}",
+            points.len(),
+            names(axes, place)
+        )));
         Ok::<_, LabError>(trial)
     })?;
     runner.tell(Progress::Ends);
     let varied = axes.iter().map(|a| a.0.clone()).collect();
-    let text = axes.iter().map(|(name, values)| format!("{name}={}\n", values.join(","))).collect();
-    Manifest::new(experiment.name.clone(), text, varied, request.frames, points).write(&request.folder)?;
+    let text = axes
+        .iter()
+        .map(|(name, values)| format!("{name}={}\n", values.join(",")))
+        .collect();
+    Manifest::new(
+        experiment.name.clone(),
+        text,
+        varied,
+        request.frames,
+        points,
+    )
+    .write(&request.folder)?;
     write_table(&request.folder)?;
     LabError::of_messages(runner.lab.gpu.messages().len())?;
-    let found =
-        found.ok_or_else(|| LabError::Request(format!("the setting to start from cannot be run: {refused}")))?;
+    let found = found.ok_or_else(|| {
+        LabError::Request(format!(
+            "the setting to start from cannot be run: {refused}"
+        ))
+    })?;
     let best = at(experiment, axes, &found.place);
-    Ok(Fitted { found, best, defaults: graph.params.clone() })
+    Ok(Fitted {
+        found,
+        best,
+        defaults: graph.params.clone(),
+    })
 }
 
 /// The values of a place, where there is more than one.
 fn names(axes: &[Axis], place: &[usize]) -> String {
     let list = axes.iter().zip(place).filter(|(axis, _)| axis.1.len() > 1);
-    list.map(|((name, values), i)| format!("{name}={}", values[*i])).collect::<Vec<_>>().join(" ")
+    list.map(|((name, values), i)| format!("{name}={}", values[*i]))
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 fn point(runner: &mut Runner, request: &Request, place: &[usize]) -> Result<SweepPoint, LabError> {
-    let labels = request.axes.iter().zip(place).map(|((name, values), i)| (name.clone(), values[*i].clone())).collect();
-    runner.point(at(request.experiment, request.axes, place), labels, request.frames)
+    let labels = request
+        .axes
+        .iter()
+        .zip(place)
+        .map(|((name, values), i)| (name.clone(), values[*i].clone()))
+        .collect();
+    runner.point(
+        at(request.experiment, request.axes, place),
+        labels,
+        request.frames,
+    )
 }
 
 /// Whether a record has the score that is searched by; those of an earlier search by another metric have not.
 fn scored(record: &PointRecord, request: &Request) -> bool {
     record.done().is_none_or(|point| {
-        point.scores.get(request.part).is_some_and(|s| s.not_finite > 0 || s.get(request.metric.key).is_finite())
+        point
+            .scores
+            .get(request.part)
+            .is_some_and(|s| s.not_finite > 0 || s.get(request.metric.key).is_finite())
     })
 }
 
 /// Both quantities of a setting; nothing, and why, where graph, device or one of the graph's checks refuses it.
 fn quantities(record: &PointRecord, request: &Request) -> (Option<Trial>, Option<String>) {
-    let Some(point) = record.done() else { return (None, record.error().map(String::from)) };
+    let Some(point) = record.done() else {
+        return (None, record.error().map(String::from));
+    };
     if let Some(warning) = point.stats.warnings.first() {
         return (None, Some(first_line(warning).to_string()));
     }
     let scores = point.scores.get(request.part);
     // Metrics leave pixels out that are no numbers; a setting that makes them must not look better for it.
-    let value = scores.filter(|s| s.not_finite == 0).map_or(f64::NAN, |s| s.get(request.metric.key));
+    let value = scores
+        .filter(|s| s.not_finite == 0)
+        .map_or(f64::NAN, |s| s.get(request.metric.key));
     if !value.is_finite() {
         return (None, Some("pixels that are no numbers".into()));
     }
-    (Some(request.goal.trial(point.stats.total_gpu_ms.median, request.metric.distance(value))), None)
+    (
+        Some(request.goal.trial(
+            point.stats.total_gpu_ms.median,
+            request.metric.distance(value),
+        )),
+        None,
+    )
 }

@@ -91,7 +91,10 @@ impl<E> Search<'_, E> {
         let trial = (self.evaluate)(place)?;
         let trial = trial.filter(|t| t.cost.is_finite() && t.bounded.is_finite());
         self.known.insert(place.to_vec(), trial);
-        self.tried.push(Step { place: place.to_vec(), trial });
+        self.tried.push(Step {
+            place: place.to_vec(),
+            trial,
+        });
         Ok(trial)
     }
 
@@ -105,7 +108,10 @@ impl<E> Search<'_, E> {
     ) -> Result<(), E> {
         for (axis, to) in moves {
             if let Some(trial) = self.trial(&moved(place, &[(*axis, *to)]))? {
-                let ratios = (trial.cost / from.cost.max(1e-30), trial.bounded / from.bounded.max(1e-30));
+                let ratios = (
+                    trial.cost / from.cost.max(1e-30),
+                    trial.bounded / from.bounded.max(1e-30),
+                );
                 self.ratios.insert((*axis, *to > place[*axis]), ratios);
                 found.push(((*axis, *to), trial));
             }
@@ -115,9 +121,17 @@ impl<E> Search<'_, E> {
 
     /// Whether a step was better, or is not known, where it was last tried.
     fn is_hopeful(&self, place: &[usize], from: Trial, (axis, to): Move) -> bool {
-        self.ratios.get(&(axis, to > place[axis])).is_none_or(|(cost, bounded)| {
-            self.better(Trial { cost: from.cost * cost, bounded: from.bounded * bounded }, from)
-        })
+        self.ratios
+            .get(&(axis, to > place[axis]))
+            .is_none_or(|(cost, bounded)| {
+                self.better(
+                    Trial {
+                        cost: from.cost * cost,
+                        bounded: from.bounded * bounded,
+                    },
+                    from,
+                )
+            })
     }
 
     fn spent(&self) -> bool {
@@ -126,8 +140,15 @@ impl<E> Search<'_, E> {
 
     /// One step along each axis, either way.
     fn moves(&self, place: &[usize]) -> Vec<Move> {
-        let ways = |axis: usize| [place[axis].checked_sub(1), Some(place[axis] + 1).filter(|i| *i < self.sizes[axis])];
-        (0..place.len()).flat_map(|axis| ways(axis).into_iter().flatten().map(move |to| (axis, to))).collect()
+        let ways = |axis: usize| {
+            [
+                place[axis].checked_sub(1),
+                Some(place[axis] + 1).filter(|i| *i < self.sizes[axis]),
+            ]
+        };
+        (0..place.len())
+            .flat_map(|axis| ways(axis).into_iter().flatten().map(move |to| (axis, to)))
+            .collect()
     }
 
     /// The best of everything tried, gains of any size counted: the first of equals.
@@ -138,8 +159,13 @@ impl<E> Search<'_, E> {
             let ((beyond, value), (other_beyond, other)) = (merit(a), merit(b));
             beyond.cmp(&other_beyond).then(value.total_cmp(&other))
         };
-        let tried = self.tried.iter().filter_map(|step| Some((&step.place, step.trial?)));
-        tried.min_by(|a, b| order(&a.1, &b.1)).map(|(place, trial)| (place.clone(), trial))
+        let tried = self
+            .tried
+            .iter()
+            .filter_map(|step| Some((&step.place, step.trial?)));
+        tried
+            .min_by(|a, b| order(&a.1, &b.1))
+            .map(|(place, trial)| (place.clone(), trial))
     }
 
     /// How far a setting is from what is wanted: first within the bound, then cheap.
@@ -177,9 +203,20 @@ pub fn search<E>(
     limits: Limits,
     evaluate: &mut Evaluate<'_, E>,
 ) -> Result<Option<Found>, E> {
-    let mut s = Search { evaluate, sizes, limits, known: HashMap::new(), tried: Vec::new(), ratios: HashMap::new() };
-    let Some((mut place, mut trial)) = descend(&mut s, start, None)? else { return Ok(None) };
-    if let Some(found) = descend(&mut s, &vec![0; sizes.len()], Some(trial))?.filter(|f| s.better(f.1, trial)) {
+    let mut s = Search {
+        evaluate,
+        sizes,
+        limits,
+        known: HashMap::new(),
+        tried: Vec::new(),
+        ratios: HashMap::new(),
+    };
+    let Some((mut place, mut trial)) = descend(&mut s, start, None)? else {
+        return Ok(None);
+    };
+    if let Some(found) =
+        descend(&mut s, &vec![0; sizes.len()], Some(trial))?.filter(|f| s.better(f.1, trial))
+    {
         (place, trial) = found;
     }
     // Every value of every axis once, so that the model knows of all of them.
@@ -201,8 +238,14 @@ pub fn search<E>(
         }
         // What should miss the bound by a little may turn out to be within.
         let bound = limits.bound * (1.0 + 0.02 * (in_vain % 3) as f64);
-        let tried: Vec<(&[usize], Trial)> = s.tried.iter().filter_map(|t| Some((&t.place[..], t.trial?))).collect();
-        let Some(from) = propose(sizes, &s.known, &tried, bound) else { break };
+        let tried: Vec<(&[usize], Trial)> = s
+            .tried
+            .iter()
+            .filter_map(|t| Some((&t.place[..], t.trial?)))
+            .collect();
+        let Some(from) = propose(sizes, &s.known, &tried, bound) else {
+            break;
+        };
         s.trial(&from)?;
         in_vain += 1;
     }
@@ -215,14 +258,25 @@ pub fn search<E>(
         true => Stop::Local,
         false => Stop::Unreachable,
     };
-    Ok(Some(Found { place, trial, tried: s.tried, stop }))
+    Ok(Some(Found {
+        place,
+        trial,
+        tried: s.tried,
+        stop,
+    }))
 }
 
 /// Walks from a setting to one that no step betters, or that is dearer than `known`, which is within the bound, and
 /// itself is not: until it is within, a walk gets ever dearer.
-fn descend<E>(s: &mut Search<'_, E>, start: &[usize], known: Option<Trial>) -> Result<Option<(Vec<usize>, Trial)>, E> {
+fn descend<E>(
+    s: &mut Search<'_, E>,
+    start: &[usize],
+    known: Option<Trial>,
+) -> Result<Option<(Vec<usize>, Trial)>, E> {
     let mut place = start.to_vec();
-    let Some(mut trial) = s.trial(&place)? else { return Ok(None) };
+    let Some(mut trial) = s.trial(&place)? else {
+        return Ok(None);
+    };
     let bound = s.limits.bound;
     let known = known.filter(|known| known.bounded <= bound);
     loop {
@@ -230,8 +284,10 @@ fn descend<E>(s: &mut Search<'_, E>, start: &[usize], known: Option<Trial>) -> R
             return Ok(Some((place, trial)));
         }
         // Those that helped before, or have not been tried, come first; all of them before the walk ends.
-        let (hopeful, others): (Vec<Move>, Vec<Move>) =
-            s.moves(&place).into_iter().partition(|m| s.is_hopeful(&place, trial, *m));
+        let (hopeful, others): (Vec<Move>, Vec<Move>) = s
+            .moves(&place)
+            .into_iter()
+            .partition(|m| s.is_hopeful(&place, trial, *m));
         let mut singles = Vec::new();
         s.try_all(&place, trial, &hopeful, &mut singles)?;
         let mut next = best_single(s, trial, &singles).map(|step| vec![step]);
@@ -264,7 +320,9 @@ fn best_single<E>(s: &Search<'_, E>, from: Trial, singles: &[(Move, Trial)]) -> 
             1e6 * price / gain
         }
     };
-    better.min_by(|a, b| merit(&a.1).total_cmp(&merit(&b.1))).map(|(step, _)| *step)
+    better
+        .min_by(|a, b| merit(&a.1).total_cmp(&merit(&b.1)))
+        .map(|(step, _)| *step)
 }
 
 /// Several steps at once, where the ratios of what is known promise a gain: two single ones; then a single one with two
@@ -275,17 +333,27 @@ fn exchange<E>(
     from: Trial,
     singles: &[(Move, Trial)],
 ) -> Result<Option<Vec<Move>>, E> {
-    let singles: Vec<(Vec<Move>, Trial)> = singles.iter().map(|(step, trial)| (vec![*step], *trial)).collect();
+    let singles: Vec<(Vec<Move>, Trial)> = singles
+        .iter()
+        .map(|(step, trial)| (vec![*step], *trial))
+        .collect();
     if let Some(found) = combine(s, place, from, &singles, &singles)? {
         return Ok(Some(found));
     }
     // Steps that cost and do not help alone: more of one thing may need more of another.
     let idle = |t: &Trial| t.bounded > 0.98 * from.bounded && t.cost >= from.cost;
-    let idle: Vec<Move> = singles.iter().filter(|(_, t)| idle(t)).map(|(steps, _)| steps[0]).collect();
+    let idle: Vec<Move> = singles
+        .iter()
+        .filter(|(_, t)| idle(t))
+        .map(|(steps, _)| steps[0])
+        .collect();
     let mut together = Vec::new();
     for (i, a) in idle.iter().enumerate() {
         for b in idle.iter().skip(i + 1).filter(|b| b.0 != a.0) {
-            if let Some(trial) = s.trial(&moved(place, &[*a, *b]))?.filter(|t| t.bounded < 0.98 * from.bounded) {
+            if let Some(trial) = s
+                .trial(&moved(place, &[*a, *b]))?
+                .filter(|t| t.bounded < 0.98 * from.bounded)
+            {
                 together.push((vec![*a, *b], trial));
             }
         }
@@ -303,13 +371,26 @@ fn combine<E>(
 ) -> Result<Option<Vec<Move>>, E> {
     let mut pairs: Vec<(f64, Vec<Move>)> = Vec::new();
     for (a, x) in some {
-        for (b, y) in others.iter().filter(|(b, _)| b.iter().all(|b| a.iter().all(|a| a.0 != b.0))) {
+        for (b, y) in others
+            .iter()
+            .filter(|(b, _)| b.iter().all(|b| a.iter().all(|a| a.0 != b.0)))
+        {
             let ratio = |of: fn(&Trial) -> f64| of(x) * of(y) / of(&from).max(1e-30);
-            let expected = Trial { cost: ratio(|t| t.cost), bounded: ratio(|t| t.bounded) };
+            let expected = Trial {
+                cost: ratio(|t| t.cost),
+                bounded: ratio(|t| t.bounded),
+            };
             // A little beyond the bound may turn out to be within.
-            let near = Trial { bounded: expected.bounded / 1.05, ..expected };
+            let near = Trial {
+                bounded: expected.bounded / 1.05,
+                ..expected
+            };
             if s.better(near, from) {
-                let merit = if from.bounded <= s.limits.bound { expected.cost } else { expected.bounded };
+                let merit = if from.bounded <= s.limits.bound {
+                    expected.cost
+                } else {
+                    expected.bounded
+                };
                 pairs.push((merit, a.iter().chain(b).copied().collect()));
             }
         }
@@ -332,7 +413,10 @@ fn follow<E>(
     mut trial: Trial,
     steps: &[Move],
 ) -> Result<(Vec<usize>, Trial), E> {
-    let ups: Vec<(usize, bool)> = steps.iter().map(|(axis, to)| (*axis, *to > place[*axis])).collect();
+    let ups: Vec<(usize, bool)> = steps
+        .iter()
+        .map(|(axis, to)| (*axis, *to > place[*axis]))
+        .collect();
     let mut next = Some(moved(&place, steps));
     while let Some(to) = next {
         match s.trial(&to)? {
@@ -340,10 +424,18 @@ fn follow<E>(
             _ => break,
         }
         let further = |(axis, up): &(usize, bool)| {
-            let to = if *up { Some(place[*axis] + 1) } else { place[*axis].checked_sub(1) };
+            let to = if *up {
+                Some(place[*axis] + 1)
+            } else {
+                place[*axis].checked_sub(1)
+            };
             to.filter(|to| *to < s.sizes[*axis]).map(|to| (*axis, to))
         };
-        next = ups.iter().map(further).collect::<Option<Vec<Move>>>().map(|steps| moved(&place, &steps));
+        next = ups
+            .iter()
+            .map(further)
+            .collect::<Option<Vec<Move>>>()
+            .map(|steps| moved(&place, &steps));
     }
     Ok((place, trial))
 }

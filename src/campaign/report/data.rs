@@ -104,8 +104,16 @@ pub struct Data {
 impl Dot {
     /// Some of its values.
     pub fn title(&self, names: &[&String]) -> String {
-        let text = labelled(names.iter().filter_map(|n| Some((*n, self.labels.get(*n)?))));
-        if text.is_empty() { self.id.chars().take(8).collect() } else { text }
+        let text = labelled(
+            names
+                .iter()
+                .filter_map(|n| Some((*n, self.labels.get(*n)?))),
+        );
+        if text.is_empty() {
+            self.id.chars().take(8).collect()
+        } else {
+            text
+        }
     }
 }
 
@@ -117,7 +125,11 @@ fn experiment_of(dot: &Dot) -> &str {
 impl Data {
     pub fn new(collected: &Collected) -> Data {
         let (sweeps, names) = (collected.sweeps.clone(), collected.names.clone());
-        let mut data = Data { sweeps, names, ..Data::default() };
+        let mut data = Data {
+            sweeps,
+            names,
+            ..Data::default()
+        };
         let mut keys = Vec::new();
         let mut room = MAX_PICTURES;
         for (planned, record) in &collected.points {
@@ -129,7 +141,11 @@ impl Data {
                 Outcome::Done(point) => point,
                 Outcome::Failed(error) => {
                     let key = (record.about.subject.clone(), record.device.name.clone());
-                    data.failed.push(Failed { labels: planned.labels.clone(), key, error: error.clone() });
+                    data.failed.push(Failed {
+                        labels: planned.labels.clone(),
+                        key,
+                        error: error.clone(),
+                    });
                     continue;
                 }
             };
@@ -169,7 +185,9 @@ impl Data {
                 *stages.entry(&pass.stage).or_default() += pass.gpu_ms.median;
             }
             let mut picture = |kind| {
-                let bytes = collected.picture(kind, &record.id).filter(|b| b.len() <= room)?;
+                let bytes = collected
+                    .picture(kind, &record.id)
+                    .filter(|b| b.len() <= room)?;
                 room -= bytes.len();
                 Some(bytes)
             };
@@ -180,7 +198,10 @@ impl Data {
                 ms: point.stats.total_gpu_ms.median,
                 p95: point.stats.total_gpu_ms.p95,
                 bytes: point.stats.total_bytes,
-                stages: stages.into_iter().map(|(name, ms)| (name.to_string(), ms)).collect(),
+                stages: stages
+                    .into_iter()
+                    .map(|(name, ms)| (name.to_string(), ms))
+                    .collect(),
                 scores: parts_of(point),
                 noise: point.noise.clone(),
                 warnings: point.stats.warnings.clone(),
@@ -191,19 +212,33 @@ impl Data {
             });
         }
         data.parts = total_first(data.dots.iter().flat_map(|d| d.scores.keys()));
-        data.keys = keys.into_iter().map(|(subject, device)| (subject.clone(), device.clone())).collect();
+        data.keys = keys
+            .into_iter()
+            .map(|(subject, device)| (subject.clone(), device.clone()))
+            .collect();
         data
     }
 
     /// The points of a subject that have a score, in order.
     pub fn scored(&self, subject: usize, part: &str, metric: &Metric) -> Vec<Scored> {
         let several = self.experiments_of_several_graphs();
-        let dots = self.dots.iter().enumerate().filter(|d| d.1.subject == subject);
+        let dots = self
+            .dots
+            .iter()
+            .enumerate()
+            .filter(|d| d.1.subject == subject);
         dots.filter_map(|(index, dot)| {
             let scores = dot.scores.get(part)?;
             let error = metric.distance(*scores.get(metric.key)?);
-            let noisy = within_noise(*scores.get(RELMSE).unwrap_or(&f64::INFINITY), dot.noise.get(part).copied());
-            let experiment = if several.contains(experiment_of(dot)) { &dot.graph } else { experiment_of(dot) };
+            let noisy = within_noise(
+                *scores.get(RELMSE).unwrap_or(&f64::INFINITY),
+                dot.noise.get(part).copied(),
+            );
+            let experiment = if several.contains(experiment_of(dot)) {
+                &dot.graph
+            } else {
+                experiment_of(dot)
+            };
             let experiment = experiment.to_string();
             let preset = self.names.len() > 1 && dot.labels.keys().all(|name| name == "experiment");
             (error.is_finite() && dot.ms > 0.0).then_some(Scored {
@@ -221,13 +256,23 @@ impl Data {
     /// Experiments with points of several graphs, which charts colour by graph.
     fn experiments_of_several_graphs(&self) -> BTreeSet<&str> {
         let mut graphs: BTreeMap<&str, &str> = BTreeMap::new();
-        let of = self.dots.iter().map(|dot| (experiment_of(dot), dot.graph.as_str()));
-        of.filter_map(|(name, graph)| (*graphs.entry(name).or_insert(graph) != graph).then_some(name)).collect()
+        let of = self
+            .dots
+            .iter()
+            .map(|dot| (experiment_of(dot), dot.graph.as_str()));
+        of.filter_map(|(name, graph)| {
+            (*graphs.entry(name).or_insert(graph) != graph).then_some(name)
+        })
+        .collect()
     }
 
     /// A file's name for a subject.
     pub fn name(&self, what: &str, subject: usize) -> String {
         let what = file_name(what);
-        if self.subjects.len() > 1 { format!("{what}-{}", subject + 1) } else { what }
+        if self.subjects.len() > 1 {
+            format!("{what}-{}", subject + 1)
+        } else {
+            what
+        }
     }
 }

@@ -26,11 +26,17 @@ const MAX_BARS: usize = 40;
 ///
 /// # Errors
 /// No finished point; a folder that cannot be written to.
-pub fn write(collected: &Collected, metrics: &[&'static Metric], folder: &Path) -> Result<Vec<PathBuf>, LabError> {
+pub fn write(
+    collected: &Collected,
+    metrics: &[&'static Metric],
+    folder: &Path,
+) -> Result<Vec<PathBuf>, LabError> {
     let data = Data::new(collected);
     if data.dots.is_empty() {
         let n = collected.points.len();
-        return Err(LabError::Request(format!("none of the {n} points is measured yet: run `conelab sweep` first")));
+        return Err(LabError::Request(format!(
+            "none of the {n} points is measured yet: run `conelab sweep` first"
+        )));
     }
     let charts = charts(&data, metrics)?;
     let table = csv(collected)?;
@@ -39,7 +45,10 @@ pub fn write(collected: &Collected, metrics: &[&'static Metric], folder: &Path) 
         .collect::<Result<_, LabError>>()?;
     let scenes = scenes::Scenes::of(&data);
     let mut files: Vec<File> = vec![("points.csv".into(), table.clone().into_bytes())];
-    let charted = charts.iter().map(|c| (&c.name, &c.svg)).chain(passes.iter().map(|(name, svg)| (name, svg)));
+    let charted = charts
+        .iter()
+        .map(|c| (&c.name, &c.svg))
+        .chain(passes.iter().map(|(name, svg)| (name, svg)));
     files.extend(charted.map(|(name, svg)| (format!("{name}.svg"), svg.clone().into_bytes())));
     if let Some(scenes) = &scenes {
         files.push(("scenes.csv".into(), scenes.csv(&data)?.into_bytes()));
@@ -63,7 +72,14 @@ fn charts(data: &Data, metrics: &[&'static Metric]) -> Result<Vec<Chart>, LabErr
                 let name = data.name(&format!("{part}-{}", metric.key), subject);
                 let svg = scatter::scatter(&format!("{title}: {part}"), &metric.axis(), &dots)?;
                 let points = dots.iter().map(|d| d.index).collect();
-                out.push(Chart { name, subject, part: part.clone(), metric, points, svg });
+                out.push(Chart {
+                    name,
+                    subject,
+                    part: part.clone(),
+                    metric,
+                    points,
+                    svg,
+                });
             }
         }
     }
@@ -74,19 +90,44 @@ fn charts(data: &Data, metrics: &[&'static Metric]) -> Result<Vec<Chart>, LabErr
 fn passes(data: &Data, subject: usize) -> Result<String, LabError> {
     let scored = data.scored(subject, "total", &METRICS[0]);
     let pairs: Vec<(f64, f64)> = scored.iter().map(|d| (d.ms, d.error)).collect();
-    let mut chosen: Vec<usize> = pareto(&pairs).into_iter().map(|i| scored[i].index).collect();
-    let what = if chosen.is_empty() { "fastest points" } else { "points on the Pareto front of the total" };
+    let mut chosen: Vec<usize> = pareto(&pairs)
+        .into_iter()
+        .map(|i| scored[i].index)
+        .collect();
+    let what = if chosen.is_empty() {
+        "fastest points"
+    } else {
+        "points on the Pareto front of the total"
+    };
     if chosen.is_empty() {
-        chosen = (0..data.dots.len()).filter(|i| data.dots[*i].subject == subject).collect();
+        chosen = (0..data.dots.len())
+            .filter(|i| data.dots[*i].subject == subject)
+            .collect();
     }
     chosen.sort_by(|a, b| data.dots[*a].ms.total_cmp(&data.dots[*b].ms));
     chosen.truncate(MAX_BARS);
     // What all of them share tells none of them apart.
     let value = |i: usize, name: &String| data.dots[i].labels.get(name);
-    let differs = |name: &&String| chosen.iter().any(|i| value(*i, name) != value(chosen[0], name));
+    let differs = |name: &&String| {
+        chosen
+            .iter()
+            .any(|i| value(*i, name) != value(chosen[0], name))
+    };
     let names: Vec<&String> = data.names.iter().filter(differs).collect();
     let dots = chosen.iter().map(|i| &data.dots[*i]);
-    let rows = dots.map(|d| Bar { label: d.title(&names), parts: d.stages.clone(), hollow: false });
-    let title = format!("{}: {what}, ms of each stage (medians)", data.subjects[subject]);
-    bars(&title, " ms", |ms| format!("{ms:.3}"), &rows.collect::<Vec<_>>())
+    let rows = dots.map(|d| Bar {
+        label: d.title(&names),
+        parts: d.stages.clone(),
+        hollow: false,
+    });
+    let title = format!(
+        "{}: {what}, ms of each stage (medians)",
+        data.subjects[subject]
+    );
+    bars(
+        &title,
+        " ms",
+        |ms| format!("{ms:.3}"),
+        &rows.collect::<Vec<_>>(),
+    )
 }

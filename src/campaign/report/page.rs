@@ -57,22 +57,37 @@ pub fn page(
     scenes: Option<&Scenes>,
 ) -> Result<String, LabError> {
     let jpeg = |bytes: &Option<Vec<u8>>| bytes.as_ref().map(|b| url("image/jpeg", b));
-    let dots =
-        data.dots.iter().map(|dot| PageDot { dot, picture: jpeg(&dot.picture), error_map: jpeg(&dot.error_map) });
-    let charted =
-        charts.iter().map(|c| PageChart { subject: c.subject, part: &c.part, metric: c.metric.key, points: &c.points });
+    let dots = data.dots.iter().map(|dot| PageDot {
+        dot,
+        picture: jpeg(&dot.picture),
+        error_map: jpeg(&dot.error_map),
+    });
+    let charted = charts.iter().map(|c| PageChart {
+        subject: c.subject,
+        part: &c.part,
+        metric: c.metric.key,
+        points: &c.points,
+    });
     let shown = PageData {
         names: &data.names,
         subjects: &data.subjects,
         settings: &data.settings,
         parts: &data.parts,
-        colors: COLORS.iter().map(|c| format!("rgb({},{},{})", c.0, c.1, c.2)).collect(),
-        metrics: METRICS.iter().map(|m| (m.key, m.title, m.best == Best::One)).collect(),
+        colors: COLORS
+            .iter()
+            .map(|c| format!("rgb({},{},{})", c.0, c.1, c.2))
+            .collect(),
+        metrics: METRICS
+            .iter()
+            .map(|m| (m.key, m.title, m.best == Best::One))
+            .collect(),
         charts: charted.collect(),
         dots: dots.collect(),
     };
     // Nothing in a string can end the element that the data stands in.
-    let json = serde_json::to_string(&shown).map_err(LabError::making("JSON"))?.replace('<', "\\u003c");
+    let json = serde_json::to_string(&shown)
+        .map_err(LabError::making("JSON"))?
+        .replace('<', "\\u003c");
     let title = data.sweeps.join(", ");
     let body = html! {
         h1 { (title) }
@@ -107,5 +122,9 @@ pub fn page(
         script type="application/json" id="data" { (PreEscaped(json)) }
         script { (PreEscaped(SCRIPT)) }
     };
-    Ok(whole_page(&format!("{title}: error against time"), STYLE, &body))
+    Ok(whole_page(
+        &format!("{title}: error against time"),
+        STYLE,
+        &body,
+    ))
 }

@@ -3,9 +3,15 @@
 /// Indices of the points on the Pareto front, by time: those that no other (time, error) beats in both numbers, where
 /// less is better. Of equal points the first counts.
 pub fn pareto(points: &[(f64, f64)]) -> Vec<usize> {
-    let mut order: Vec<usize> =
-        (0..points.len()).filter(|i| points[*i].0.is_finite() && points[*i].1.is_finite()).collect();
-    order.sort_by(|a, b| points[*a].0.total_cmp(&points[*b].0).then(points[*a].1.total_cmp(&points[*b].1)));
+    let mut order: Vec<usize> = (0..points.len())
+        .filter(|i| points[*i].0.is_finite() && points[*i].1.is_finite())
+        .collect();
+    order.sort_by(|a, b| {
+        points[*a]
+            .0
+            .total_cmp(&points[*b].0)
+            .then(points[*a].1.total_cmp(&points[*b].1))
+    });
     let mut least = f64::INFINITY;
     order.retain(|i| {
         let better = points[*i].1 < least;

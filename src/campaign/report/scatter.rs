@@ -19,10 +19,21 @@ pub fn scatter(title: &str, metric: &str, dots: &[Scored]) -> Result<String, Lab
 
 fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), Failure> {
     // A perfect point has no logarithm: it is drawn at the bottom, a tenth below the others.
-    let least = dots.iter().map(|d| d.error).filter(|e| *e > 0.0).fold(f64::INFINITY, f64::min).min(1.0);
+    let least = dots
+        .iter()
+        .map(|d| d.error)
+        .filter(|e| *e > 0.0)
+        .fold(f64::INFINITY, f64::min)
+        .min(1.0);
     let place = |d: &Scored| (d.ms, d.error.max(least / 10.0));
-    let (xs, ys) = (around(dots.iter().map(|d| place(d).0)), around(dots.iter().map(|d| place(d).1)));
-    let (x, y) = (Axis::log("GPU time of a frame, ms, median", xs), Axis::log(metric, ys));
+    let (xs, ys) = (
+        around(dots.iter().map(|d| place(d).0)),
+        around(dots.iter().map(|d| place(d).1)),
+    );
+    let (x, y) = (
+        Axis::log("GPU time of a frame, ms, median", xs),
+        Axis::log(metric, ys),
+    );
     let title = format!("{title}, {metric} against time ({} points)", dots.len());
     let mut chart = plane(area, &title, &x, &y)?;
     let pairs: Vec<(f64, f64)> = dots.iter().map(|d| (d.ms, d.error)).collect();
@@ -33,15 +44,26 @@ fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), F
         steps.extend(steps.last().map(|last| (at.0, last.1)));
         steps.push(at);
     }
-    chart.draw_series(std::iter::once(PathElement::new(steps, FRONT.stroke_width(1))))?;
+    chart.draw_series(std::iter::once(PathElement::new(
+        steps,
+        FRONT.stroke_width(1),
+    )))?;
     let mut experiments: Vec<&str> = dots.iter().map(|d| d.experiment.as_str()).collect();
     experiments.sort_unstable();
     experiments.dedup();
     let color_of = |name: &str| color(experiments.iter().position(|e| *e == name).unwrap_or(0));
     chart.draw_series(dots.iter().enumerate().map(|(i, d)| {
         let on_front = front.contains(&i);
-        let color = if on_front && experiments.len() < 2 { FRONT } else { color_of(&d.experiment) };
-        let style = if d.noisy { color.stroke_width(2) } else { color.mix(0.85).filled() };
+        let color = if on_front && experiments.len() < 2 {
+            FRONT
+        } else {
+            color_of(&d.experiment)
+        };
+        let style = if d.noisy {
+            color.stroke_width(2)
+        } else {
+            color.mix(0.85).filled()
+        };
         Circle::new(place(d), if on_front { 6 } else { 4 }, style)
     }))?;
     chart.draw_series(dots.iter().filter(|d| d.preset).map(|d| {
@@ -54,11 +76,18 @@ fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), F
             let color = color_of(name);
             // No circle: those are the dots.
             let key = move |(x, y)| Rectangle::new([(x, y - 5), (x + 10, y + 5)], color.filled());
-            chart.draw_series(std::iter::empty::<Circle<(f64, f64), i32>>())?.label(*name).legend(key);
+            chart
+                .draw_series(std::iter::empty::<Circle<(f64, f64), i32>>())?
+                .label(*name)
+                .legend(key);
         }
         chart
             .configure_series_labels()
-            .position(free_corner(&dots.iter().map(place).collect::<Vec<_>>(), (xs, ys), experiments.len()))
+            .position(free_corner(
+                &dots.iter().map(place).collect::<Vec<_>>(),
+                (xs, ys),
+                experiments.len(),
+            ))
             .background_style(WHITE.mix(0.8))
             .border_style(BLACK.mix(0.2))
             .label_font((FONT, 15))
@@ -68,7 +97,11 @@ fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), F
 }
 
 /// The corner where a key with that number of lines covers the fewest points; both axes are logarithmic.
-fn free_corner(points: &[(f64, f64)], (xs, ys): ((f64, f64), (f64, f64)), lines: usize) -> SeriesLabelPosition {
+fn free_corner(
+    points: &[(f64, f64)],
+    (xs, ys): ((f64, f64), (f64, f64)),
+    lines: usize,
+) -> SeriesLabelPosition {
     use SeriesLabelPosition::{LowerLeft, LowerRight, UpperLeft, UpperRight};
     // Shares of the axes that it takes: about 130 pixels, and 24 for each line.
     let (width, height) = (0.18, 0.06 + 0.055 * lines as f64);
@@ -76,7 +109,8 @@ fn free_corner(points: &[(f64, f64)], (xs, ys): ((f64, f64), (f64, f64)), lines:
     let covered = |right: bool, upper: bool| {
         let is_within = |(x, y): &&(f64, f64)| {
             let (x, y) = (share(*x, xs), share(*y, ys));
-            (if right { x > 1.0 - width } else { x < width }) && (if upper { y > 1.0 - height } else { y < height })
+            (if right { x > 1.0 - width } else { x < width })
+                && (if upper { y > 1.0 - height } else { y < height })
         };
         points.iter().filter(is_within).count()
     };
@@ -86,13 +120,19 @@ fn free_corner(points: &[(f64, f64)], (xs, ys): ((f64, f64), (f64, f64)), lines:
         (UpperRight, covered(true, true)),
         (LowerRight, covered(true, false)),
     ];
-    corners.into_iter().min_by_key(|c| c.1).map_or(LowerLeft, |c| c.0)
+    corners
+        .into_iter()
+        .min_by_key(|c| c.1)
+        .map_or(LowerLeft, |c| c.0)
 }
 
 /// The range of some numbers above 0 with room on both sides, at least a factor of 2.
 fn around(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
-    let room = (high / low).powf(0.05).max(1.5 / (high / low).sqrt()).max(1.05);
+    let room = (high / low)
+        .powf(0.05)
+        .max(1.5 / (high / low).sqrt())
+        .max(1.05);
     (low / room, high * room)
 }
 
@@ -110,19 +150,40 @@ mod tests {
             experiment: experiment.into(),
             preset: false,
         };
-        let dots = [dot(1.0, 0.2, "threads"), dot(2.0, 0.1, "threads"), dot(3.0, 0.3, "raster")];
+        let dots = [
+            dot(1.0, 0.2, "threads"),
+            dot(2.0, 0.1, "threads"),
+            dot(3.0, 0.3, "raster"),
+        ];
         let svg = scatter("Sponza", "relMSE", &dots).unwrap();
         assert_eq!(svg.matches("<circle").count(), dots.len());
         let fills = |svg: &str| -> Vec<String> {
             let circles = svg.lines().filter(|l| l.starts_with("<circle"));
-            circles.filter_map(|l| Some(l.split("fill=\"").nth(1)?.split('"').next()?.to_string())).collect()
+            circles
+                .filter_map(|l| Some(l.split("fill=\"").nth(1)?.split('"').next()?.to_string()))
+                .collect()
         };
         let colours = fills(&svg);
-        assert!(colours[0] == colours[1] && colours[1] != colours[2], "{colours:?}");
+        assert!(
+            colours[0] == colours[1] && colours[1] != colours[2],
+            "{colours:?}"
+        );
         assert!(["threads", "raster"].iter().all(|name| svg.contains(name)));
         assert_eq!(svg.matches("threads").count(), 1, "in the key alone");
-        let marked = [Scored { preset: true, ..dot(1.0, 0.2, "threads") }, dot(2.0, 0.1, "raster")];
-        assert_eq!(scatter("Sponza", "relMSE", &marked).unwrap().matches("threads").count(), 2);
+        let marked = [
+            Scored {
+                preset: true,
+                ..dot(1.0, 0.2, "threads")
+            },
+            dot(2.0, 0.1, "raster"),
+        ];
+        assert_eq!(
+            scatter("Sponza", "relMSE", &marked)
+                .unwrap()
+                .matches("threads")
+                .count(),
+            2
+        );
         // The front is red where there is one experiment, and there is no key.
         let one = scatter("Sponza", "relMSE", &dots[..2]).unwrap();
         assert!(fills(&one).iter().all(|c| *c != colours[0]) && !one.contains("threads"));

@@ -49,23 +49,40 @@ enum Cell {
 impl Scenes {
     /// None where there are not several scenes.
     pub fn of(data: &Data) -> Option<Scenes> {
-        let names: Vec<&String> = data.names.iter().filter(|n| !OF_A_ROW.contains(&n.as_str())).collect();
-        let method =
-            |labels: &IndexMap<String, String>| labelled(names.iter().filter_map(|n| Some((*n, labels.get(*n)?))));
+        let names: Vec<&String> = data
+            .names
+            .iter()
+            .filter(|n| !OF_A_ROW.contains(&n.as_str()))
+            .collect();
+        let method = |labels: &IndexMap<String, String>| {
+            labelled(names.iter().filter_map(|n| Some((*n, labels.get(*n)?))))
+        };
         let measured = data.dots.iter().enumerate().map(|(i, dot)| {
             let key = data.keys[dot.subject].clone();
             (key, method(&dot.labels), Cell::Measured(i))
         });
-        let failed = data.failed.iter().map(|f| (f.key.clone(), method(&f.labels), Cell::Failed(f.error.clone())));
+        let failed = data.failed.iter().map(|f| {
+            (
+                f.key.clone(),
+                method(&f.labels),
+                Cell::Failed(f.error.clone()),
+            )
+        });
         let all: Vec<_> = measured.chain(failed).collect();
         let methods: IndexSet<String> = all.iter().map(|a| a.1.clone()).collect();
         let methods: Vec<String> = methods.into_iter().take(MAX_METHODS).collect();
         let mut rows: IndexMap<(Subject, String), Vec<Cell>> = IndexMap::new();
         for (key, method, cell) in all {
-            let Some(column) = methods.iter().position(|m| *m == method) else { continue };
-            rows.entry(key).or_insert_with(|| vec![Cell::Left; methods.len()])[column] = cell;
+            let Some(column) = methods.iter().position(|m| *m == method) else {
+                continue;
+            };
+            rows.entry(key)
+                .or_insert_with(|| vec![Cell::Left; methods.len()])[column] = cell;
         }
-        let mut rows: Vec<Row> = rows.into_iter().map(|(key, cells)| Row { key, cells }).collect();
+        let mut rows: Vec<Row> = rows
+            .into_iter()
+            .map(|(key, cells)| Row { key, cells })
+            .collect();
         let several = rows.iter().any(|r| r.key.0.scene != rows[0].key.0.scene);
         // Stable: scenes that the first method has no score of come last, in the order of the sweep.
         rows.sort_by(|a, b| match (a.worst(data), b.worst(data)) {
@@ -106,9 +123,17 @@ impl Scenes {
         let mut lines: Vec<Line> = Vec::new();
         for row in &self.rows {
             for (method, cell) in self.methods.iter().zip(&row.cells) {
-                let line = |(bounces, scores)| Line { row, method, cell, bounces, scores };
+                let line = |(bounces, scores)| Line {
+                    row,
+                    method,
+                    cell,
+                    bounces,
+                    scores,
+                };
                 match cell {
-                    Cell::Measured(i) => lines.extend(scores(data, &data.dots[*i]).into_iter().map(line)),
+                    Cell::Measured(i) => {
+                        lines.extend(scores(data, &data.dots[*i]).into_iter().map(line))
+                    }
                     Cell::Failed(_) => lines.push(line((String::new(), None))),
                     Cell::Left => {}
                 }
@@ -122,7 +147,9 @@ impl Scenes {
         table.column("method", |l| l.method.to_string());
         table.column("bounces", |l| l.bounces.clone());
         for metric in Metric::few() {
-            table.column(metric.key, |l| cell(l.scores.and_then(|s| s.get(metric.key))));
+            table.column(metric.key, |l| {
+                cell(l.scores.and_then(|s| s.get(metric.key)))
+            });
         }
         table.column("median ms", |l| match l.cell {
             Cell::Measured(i) => data.dots[*i].ms.to_string(),
@@ -148,8 +175,15 @@ struct Line<'s> {
 impl Row {
     fn html(&self, data: &Data) -> Markup {
         let (subject, device) = &self.key;
-        let about = format!("camera {}, time {} s, {device}", subject.camera, subject.time);
-        let reference = data.keys.iter().position(|k| *k == self.key).and_then(|s| data.references[s].as_ref());
+        let about = format!(
+            "camera {}, time {} s, {device}",
+            subject.camera, subject.time
+        );
+        let reference = data
+            .keys
+            .iter()
+            .position(|k| *k == self.key)
+            .and_then(|s| data.references[s].as_ref());
         html! {
             tr {
                 th title=(about) { (subject.scene) br; small { (subject.size.0) "x" (subject.size.1) } }
@@ -200,10 +234,14 @@ fn scores<'d>(data: &Data, dot: &'d Dot) -> Vec<(String, Option<&'d Scores>)> {
         // All parts are scored against the first reference; the total's other scores say against which.
         let bounces = match part.as_str() {
             "total" => data.bounces[dot.subject],
-            _ => part.strip_prefix("total, ").and_then(|rest| rest.strip_suffix(" bounces")?.parse().ok()),
+            _ => part
+                .strip_prefix("total, ")
+                .and_then(|rest| rest.strip_suffix(" bounces")?.parse().ok()),
         };
         list.extend(bounces.map(|b| (b, scores)));
     }
     list.sort_by_key(|s| std::cmp::Reverse(s.0));
-    list.into_iter().map(|(bounces, scores)| (bounces.to_string(), Some(scores))).collect()
+    list.into_iter()
+        .map(|(bounces, scores)| (bounces.to_string(), Some(scores)))
+        .collect()
 }

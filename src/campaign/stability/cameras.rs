@@ -41,12 +41,22 @@ impl Cameras {
     ) -> Result<Option<Cameras>, LabError> {
         Ok(match motion {
             Motion::Cut { to, at } => {
-                let there = Experiment { camera: to.clone(), ..experiment.clone() };
-                Some(Cameras::Cut { to: camera_of(&there, scene)?, at: *at })
+                let there = Experiment {
+                    camera: to.clone(),
+                    ..experiment.clone()
+                };
+                Some(Cameras::Cut {
+                    to: camera_of(&there, scene)?,
+                    at: *at,
+                })
             }
             Motion::Path { file, from, step } => {
                 let path = CameraPath::read(&folder.join(file)).map_err(LabError::Input)?;
-                Some(Cameras::Path { path, from: *from, step: *step })
+                Some(Cameras::Path {
+                    path,
+                    from: *from,
+                    step: *step,
+                })
             }
             _ => None,
         })

@@ -20,14 +20,28 @@ pub(super) struct Chart {
 type Bars<'r> = (&'r str, String, String, fn(&PartResult) -> Option<f64>);
 
 fn all_bars<'r>(focus: Option<(&'r str, &'r str)>) -> Vec<Bars<'r>> {
-    let mut list: Vec<Bars> = vec![("total", "all E_t".into(), "E_t of the total, radiance".into(), |p| p.e)];
+    let mut list: Vec<Bars> = vec![(
+        "total",
+        "all E_t".into(),
+        "E_t of the total, radiance".into(),
+        |p| p.e,
+    )];
     if let Some((part, title)) = focus {
         let flicker = format!("Flicker index of {title}, mean over pixels");
-        list.push((part, format!("all E_t of {part}"), format!("E_t of {title}, radiance"), |p| p.e));
-        list.push((part, format!("all flicker of {part}"), flicker, |p| p.flicker.map(|f| f.mean)));
+        list.push((
+            part,
+            format!("all E_t of {part}"),
+            format!("E_t of {title}, radiance"),
+            |p| p.e,
+        ));
+        list.push((part, format!("all flicker of {part}"), flicker, |p| {
+            p.flicker.map(|f| f.mean)
+        }));
     }
     let error = "relMSE of the total, last frame".into();
-    list.push(("total", "all relMSE".into(), error, |p| p.scores.as_ref().map(|s| s.get(RELMSE))));
+    list.push(("total", "all relMSE".into(), error, |p| {
+        p.scores.as_ref().map(|s| s.get(RELMSE))
+    }));
     list
 }
 
@@ -41,48 +55,85 @@ pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
             let part = r.part(part)?;
             let hollow = title.starts_with("E_t") && part.told_apart == Some(false);
             let method = r.about.method.clone();
-            Some(Bar { label: format!("{}, {method}", r.about.title()), parts: vec![(method, value(part)?)], hollow })
+            Some(Bar {
+                label: format!("{}, {method}", r.about.title()),
+                parts: vec![(method, value(part)?)],
+                hollow,
+            })
         };
         let list: Vec<Bar> = report.results.iter().filter_map(bar).collect();
         if list.iter().any(|b| b.parts[0].1 > 0.0) {
-            out.push(Chart { name: file_name(&name), case: None, svg: bars(&title, "", short, &list)? });
+            out.push(Chart {
+                name: file_name(&name),
+                case: None,
+                svg: bars(&title, "", short, &list)?,
+            });
         }
     }
     for (case, of) in report.cases() {
         let over_frames = |value: &dyn Fn(&FrameScore) -> Option<f64>, part: &str| -> Vec<Line> {
             let line = |r: &&CaseRecord| {
-                let points = r.part(part)?.frames.iter().filter_map(|f| Some((f.frame as f64, value(f)?)));
+                let points = r
+                    .part(part)?
+                    .frames
+                    .iter()
+                    .filter_map(|f| Some((f.frame as f64, value(f)?)));
                 let points: Vec<(f64, f64)> = points.collect();
-                (points.len() > 1).then(|| Line { name: r.about.method.clone(), points, grey: false })
+                (points.len() > 1).then(|| Line {
+                    name: r.about.method.clone(),
+                    points,
+                    grey: false,
+                })
             };
             of.iter().filter_map(line).collect()
         };
         // The first method's: it is the same for all.
         let grey = |lines: Vec<Line>, name: &str| {
-            lines.into_iter().next().map(|l| Line { name: name.into(), grey: true, ..l })
+            lines.into_iter().next().map(|l| Line {
+                name: name.into(),
+                grey: true,
+                ..l
+            })
         };
         let mut add = |name: &str, what: &str, unit: &str, lines: Vec<Line>| {
             let title = format!("{case}: {what}");
             let svg = frames_chart(&title, unit, &lines)?;
-            let chart = |svg| Chart { name: file_name(&format!("{case} {name}")), case: Some(case.clone()), svg };
+            let chart = |svg| Chart {
+                name: file_name(&format!("{case} {name}")),
+                case: Some(case.clone()),
+                svg,
+            };
             out.extend(svg.map(chart));
             Ok::<(), LabError>(())
         };
         for part in std::iter::once("total").chain(focus.map(|f| f.0)) {
             let mut lines = over_frames(&|f| f.change.map(|c| c.rms), part);
-            lines.extend(grey(over_frames(&|f| f.noise, part), "noise of the reference"));
+            lines.extend(grey(
+                over_frames(&|f| f.noise, part),
+                "noise of the reference",
+            ));
             let what = format!("E_t of {part}");
             add(&what, &what, "radiance", lines)?;
         }
         let Some((part, title)) = focus else { continue };
         let measured = || of.iter().filter_map(|r| r.done());
         if measured().any(|m| m.event.is_some()) {
-            add("error", &format!("relMSE of {title}"), "relMSE", over_frames(&|f| f.relmse, part))?;
+            add(
+                "error",
+                &format!("relMSE of {title}"),
+                "relMSE",
+                over_frames(&|f| f.relmse, part),
+            )?;
         }
         if measured().any(|m| m.parts.values().any(|p| p.step.is_some())) {
             let mut lines = over_frames(&|f| f.mean, part);
             lines.extend(grey(over_frames(&|f| f.reference_mean, part), "reference"));
-            add("response", &format!("mean luminance of {title}"), "radiance", lines)?;
+            add(
+                "response",
+                &format!("mean luminance of {title}"),
+                "radiance",
+                lines,
+            )?;
         }
     }
     Ok(out)
@@ -95,7 +146,9 @@ fn frames_chart(title: &str, unit: &str, list: &[Line]) -> Result<Option<String>
     if most <= 0.0 {
         return Ok(None);
     }
-    let (first, last) = points().fold((f64::INFINITY, 0.0f64), |(a, b), p| (a.min(p.0), b.max(p.0)));
+    let (first, last) = points().fold((f64::INFINITY, 0.0f64), |(a, b), p| {
+        (a.min(p.0), b.max(p.0))
+    });
     let x = Axis::linear("frame", (first, last.max(first + 1.0)));
     lines(title, &x, &Axis::linear(unit, (0.0, most * 1.08)), list).map(Some)
 }

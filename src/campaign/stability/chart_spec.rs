@@ -63,29 +63,47 @@ impl CostChart {
         if self.groups.0.is_empty() {
             let at = At::default();
             let all = methods.iter().map(|m| m.name.clone()).collect();
-            self.groups.0.push((Loc { value: String::new(), at }, Loc { value: all, at }));
+            self.groups.0.push((
+                Loc {
+                    value: String::new(),
+                    at,
+                },
+                Loc { value: all, at },
+            ));
         }
         let grouped = || self.groups.0.iter().flat_map(|g| &g.1.value);
         for name in grouped().chain(self.equal_time.iter().flat_map(|e| &e.methods)) {
             if !methods.iter().any(|m| m.name == *name) {
-                return Err(format!("the chart names the method '{name}', which is none of the suite's"));
+                return Err(format!(
+                    "the chart names the method '{name}', which is none of the suite's"
+                ));
             }
         }
         let first = methods.first().map(|m| &m.name);
         for name in self.error.iter().chain(&self.motions) {
             let case = cases.iter().find(|c| c.name == *name);
-            let case =
-                case.ok_or_else(|| format!("the chart names the case '{name}', which is none of the suite's"))?;
+            let case = case.ok_or_else(|| {
+                format!("the chart names the case '{name}', which is none of the suite's")
+            })?;
             if let Some(m) = grouped().chain(first).find(|m| !case.is_for(m)) {
-                return Err(format!("the chart needs the method '{m}' in the case '{name}', which leaves it out"));
+                return Err(format!(
+                    "the chart needs the method '{m}' in the case '{name}', which leaves it out"
+                ));
             }
         }
         if let Some(equal) = &self.equal_time {
             if let Some(first) = first.filter(|first| equal.methods.contains(first)) {
-                return Err(format!("'{first}' is the suite's first method: others are made as fast as it is"));
+                return Err(format!(
+                    "'{first}' is the suite's first method: others are made as fast as it is"
+                ));
             }
-            if let (Some(m), Some(first)) = (equal.methods.iter().find(|m| !grouped().any(|g| g == *m)), first) {
-                return Err(format!("'{m}' is made as fast as '{first}', but in none of the chart's groups"));
+            if let (Some(m), Some(first)) = (
+                equal.methods.iter().find(|m| !grouped().any(|g| g == *m)),
+                first,
+            ) {
+                return Err(format!(
+                    "'{m}' is made as fast as '{first}', but in none of the chart's groups"
+                ));
             }
             if equal.values.is_empty() || equal.values.len() > MAX_VALUES {
                 return Err(format!("equal_time needs 1 to {MAX_VALUES} values"));
@@ -99,22 +117,41 @@ impl CostChart {
 
     /// Leaves out methods that do not stay.
     pub(super) fn keep(&mut self, stays: &dyn Fn(&String) -> bool) {
-        self.groups.0.iter_mut().for_each(|g| g.1.value.retain(stays));
+        self.groups
+            .0
+            .iter_mut()
+            .for_each(|g| g.1.value.retain(stays));
         self.groups.0.retain(|g| !g.1.value.is_empty());
-        self.equal_time.iter_mut().for_each(|e| e.methods.retain(stays));
+        self.equal_time
+            .iter_mut()
+            .for_each(|e| e.methods.retain(stays));
     }
 
     /// What a method is timed at, if it is one of those that are made as fast as the first.
     pub fn varied(&self, method: &str) -> Vec<Setting> {
-        let own = self.equal_time.iter().filter(|e| e.methods.iter().any(|m| m == method));
-        let setting = |e: &EqualTime, v: &RawText| Setting { name: e.parameter.clone(), text: v.0.clone() };
-        own.flat_map(|e| e.values.iter().map(move |v| setting(e, v))).collect()
+        let own = self
+            .equal_time
+            .iter()
+            .filter(|e| e.methods.iter().any(|m| m == method));
+        let setting = |e: &EqualTime, v: &RawText| Setting {
+            name: e.parameter.clone(),
+            text: v.0.clone(),
+        };
+        own.flat_map(|e| e.values.iter().map(move |v| setting(e, v)))
+            .collect()
     }
 
     /// A method at each of its values, or as it is.
     pub fn variants(&self, method: &Method) -> Vec<Method> {
         let settings = self.varied(&method.name);
-        let with = |s| Method { set: method.set.iter().chain([s]).cloned().collect(), ..method.clone() };
-        if settings.is_empty() { vec![method.clone()] } else { settings.iter().map(with).collect() }
+        let with = |s| Method {
+            set: method.set.iter().chain([s]).cloned().collect(),
+            ..method.clone()
+        };
+        if settings.is_empty() {
+            vec![method.clone()]
+        } else {
+            settings.iter().map(with).collect()
+        }
     }
 }

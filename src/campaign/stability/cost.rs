@@ -73,8 +73,15 @@ impl Candidate {
 
     /// Its time over that of the first method: median of the rounds' ratios.
     pub fn ratio(&self) -> Option<f64> {
-        let ratios: Vec<f64> = self.ms.iter().zip(&self.first_ms).map(|(own, first)| own / first).collect();
-        (!ratios.is_empty()).then(|| median(ratios)).filter(|r| r.is_finite() && *r > 0.0)
+        let ratios: Vec<f64> = self
+            .ms
+            .iter()
+            .zip(&self.first_ms)
+            .map(|(own, first)| own / first)
+            .collect();
+        (!ratios.is_empty())
+            .then(|| median(ratios))
+            .filter(|r| r.is_finite() && *r > 0.0)
     }
 }
 
@@ -87,7 +94,11 @@ impl Cost {
     /// Takes the candidate whose time is nearest to the first's.
     fn choose(&mut self) {
         let far = |c: &Candidate| c.ratio().map(|r| r.ln().abs());
-        let timed = self.candidates.iter().enumerate().filter_map(|(i, c)| Some((i, far(c)?)));
+        let timed = self
+            .candidates
+            .iter()
+            .enumerate()
+            .filter_map(|(i, c)| Some((i, far(c)?)));
         self.chosen = timed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|c| c.0);
     }
 }
@@ -104,17 +115,32 @@ pub(super) fn costs(
     options: &Options,
 ) -> Result<Vec<Cost>, LabError> {
     let charted = |m: &&Method| chart.groups.0.iter().any(|g| g.1.value.contains(&m.name));
-    let names: Vec<&Method> =
-        suite.methods.iter().take(1).chain(suite.methods.iter().skip(1).filter(charted)).collect();
+    let names: Vec<&Method> = suite
+        .methods
+        .iter()
+        .take(1)
+        .chain(suite.methods.iter().skip(1).filter(charted))
+        .collect();
     // A suite of all candidates in one case: its plan checks every value, and gives each its number.
     let timed = Suite {
         methods: names.iter().flat_map(|m| chart.variants(m)).collect(),
-        cases: suite.cases.iter().find(|c| chart.motions.first() == Some(&c.name)).cloned().into_iter().collect(),
+        cases: suite
+            .cases
+            .iter()
+            .find(|c| chart.motions.first() == Some(&c.name))
+            .cloned()
+            .into_iter()
+            .collect(),
         ..suite.clone()
     };
-    let options = Options { only: Vec::new(), ..options.clone() };
+    let options = Options {
+        only: Vec::new(),
+        ..options.clone()
+    };
     let jobs = plan(runner, &timed, &options)?;
-    let first = jobs.first().ok_or_else(|| LabError::Request("a chart needs a method and a case".into()))?;
+    let first = jobs
+        .first()
+        .ok_or_else(|| LabError::Request("a chart needs a method and a case".into()))?;
     let path = options.folder.join("cost.json");
     let kept = read(&path);
     let mut costs: Vec<Cost> = Vec::new();
@@ -122,15 +148,24 @@ pub(super) fn costs(
     for method in &names {
         let settings = chart.varied(&method.name);
         let own = jobs.iter().filter(|j| j.method == method.name);
-        let texts = settings.iter().map(|s| s.text.clone()).chain(settings.is_empty().then(String::new));
+        let texts = settings
+            .iter()
+            .map(|s| s.text.clone())
+            .chain(settings.is_empty().then(String::new));
         let cost = Cost {
             method: method.name.clone(),
-            parameter: settings.first().map_or(String::new(), |s| s.name.value.clone()),
+            parameter: settings
+                .first()
+                .map_or(String::new(), |s| s.name.value.clone()),
             first: first.work.clone(),
             candidates: own
                 .clone()
                 .zip(texts)
-                .map(|(j, value)| Candidate { value, work: j.work.clone(), ..Candidate::default() })
+                .map(|(j, value)| Candidate {
+                    value,
+                    work: j.work.clone(),
+                    ..Candidate::default()
+                })
                 .collect(),
             chosen: None,
         };
@@ -165,7 +200,11 @@ pub(super) fn costs(
                 continue;
             }
             told(runner, job, round * todo.len() + i, of);
-            let cost = if job.work == first.work { Ok(first_cost) } else { time(runner, job) };
+            let cost = if job.work == first.work {
+                Ok(first_cost)
+            } else {
+                time(runner, job)
+            };
             match cost {
                 Ok((ms, bytes)) => {
                     candidate.ms.push(ms);
@@ -175,20 +214,46 @@ pub(super) fn costs(
                 Err(lost @ LabError::Vulkan(VulkanError::Lost(_))) => return Err(lost),
                 Err(error) => {
                     let failed = Some(first_line(&error.to_string()).to_string());
-                    *candidate = Candidate { failed, ms: vec![], first_ms: vec![], ..candidate.clone() };
+                    *candidate = Candidate {
+                        failed,
+                        ms: vec![],
+                        first_ms: vec![],
+                        ..candidate.clone()
+                    };
                 }
             }
         }
     }
-    costs.iter_mut().filter(|c| c.chosen.is_none()).for_each(Cost::choose);
-    if let Some(cost) = costs.iter().find(|c| c.chosen.is_none() && !c.parameter.is_empty()) {
-        let why = cost.candidates.iter().find_map(|c| c.failed.as_deref()).unwrap_or("it takes no time at all");
-        return Err(LabError::Request(format!("'{}' could be timed at no {}: {why}", cost.method, cost.parameter)));
+    costs
+        .iter_mut()
+        .filter(|c| c.chosen.is_none())
+        .for_each(Cost::choose);
+    if let Some(cost) = costs
+        .iter()
+        .find(|c| c.chosen.is_none() && !c.parameter.is_empty())
+    {
+        let why = cost
+            .candidates
+            .iter()
+            .find_map(|c| c.failed.as_deref())
+            .unwrap_or("it takes no time at all");
+        return Err(LabError::Request(format!(
+            "'{}' could be timed at no {}: {why}",
+            cost.method, cost.parameter
+        )));
     }
     runner.warm.sessions.clear();
-    write_file(&path, &json(&Kept { schema: SCHEMA.into(), costs: costs.clone() })?)?;
+    write_file(
+        &path,
+        &json(&Kept {
+            schema: SCHEMA.into(),
+            costs: costs.clone(),
+        })?,
+    )?;
     // As the next run will read it, to the last place.
-    Ok(Some(read(&path)).filter(|k| k.len() == costs.len()).unwrap_or(costs))
+    Ok(Some(read(&path))
+        .filter(|k| k.len() == costs.len())
+        .unwrap_or(costs))
 }
 
 /// A candidate that is not timed yet: its method's place, its own among its method's, and what is run.
@@ -203,7 +268,10 @@ type CandidateTime = Result<(Timed, f64), LabError>;
 /// For every method, the two neighbouring candidates whose times enclose the first method's; all where there are at
 /// most two. `times`: a candidate's and the first method's, one after the other. A candidate that fails counts as too
 /// slow.
-fn between<'j>(todo: &[Open<'j>], times: &mut dyn FnMut(&Job) -> CandidateTime) -> Result<Vec<Open<'j>>, LabError> {
+fn between<'j>(
+    todo: &[Open<'j>],
+    times: &mut dyn FnMut(&Job) -> CandidateTime,
+) -> Result<Vec<Open<'j>>, LabError> {
     let mut left = Vec::new();
     for own in todo.chunk_by(|a, b| a.0 == b.0) {
         let (mut low, mut high) = (0, own.len() - 1);
@@ -222,18 +290,30 @@ fn between<'j>(todo: &[Open<'j>], times: &mut dyn FnMut(&Job) -> CandidateTime) 
 
 /// Whether what was kept is of the same candidates.
 fn same(kept: &Cost, wanted: &Cost) -> bool {
-    let list = |c: &Cost| c.candidates.iter().map(|c| (c.value.clone(), c.work.clone())).collect::<Vec<_>>();
+    let list = |c: &Cost| {
+        c.candidates
+            .iter()
+            .map(|c| (c.value.clone(), c.work.clone()))
+            .collect::<Vec<_>>()
+    };
     let head = |c: &Cost| (c.method.clone(), c.parameter.clone(), c.first.clone());
-    kept.taken().is_some_and(|c| c.ratio().is_some()) && head(kept) == head(wanted) && list(kept) == list(wanted)
+    kept.taken().is_some_and(|c| c.ratio().is_some())
+        && head(kept) == head(wanted)
+        && list(kept) == list(wanted)
 }
 
 fn told(runner: &mut Runner, job: &Job, done: usize, of: usize) {
-    runner.tell(Progress::Runs(format!("timing {}, {done} of {of}", job.method)));
+    runner.tell(Progress::Runs(format!(
+        "timing {}, {done} of {of}",
+        job.method
+    )));
 }
 
 /// What is kept; folders may come from anywhere, and what is no such file is nothing.
 fn read(path: &Path) -> Vec<Cost> {
-    let kept = read_json::<Kept>(path, MAX_FILE).ok().filter(|k| k.schema == SCHEMA);
+    let kept = read_json::<Kept>(path, MAX_FILE)
+        .ok()
+        .filter(|k| k.schema == SCHEMA);
     kept.map_or(Vec::new(), |k| k.costs)
 }
 
@@ -242,7 +322,9 @@ pub(super) fn chosen(suite: &Suite, chart: &CostChart, costs: &[Cost]) -> Suite 
     let mut suite = suite.clone();
     for method in &mut suite.methods {
         let cost = costs.iter().find(|c| c.method == method.name);
-        method.set.extend(cost.and_then(|c| chart.varied(&method.name).into_iter().nth(c.chosen?)));
+        method
+            .set
+            .extend(cost.and_then(|c| chart.varied(&method.name).into_iter().nth(c.chosen?)));
     }
     suite
 }
@@ -251,11 +333,24 @@ pub(super) fn chosen(suite: &Suite, chart: &CostChart, costs: &[Cost]) -> Suite 
 fn time(runner: &mut Runner, job: &Job) -> Timed {
     let Runner { lab, warm, .. } = runner;
     let loaded = warm.graph(&lab.home, &job.experiment.graph)?.clone();
-    let mut wanted: Vec<String> = loaded.graph.output.iter().chain(&loaded.graph.hdr).take(1).cloned().collect();
+    let mut wanted: Vec<String> = loaded
+        .graph
+        .output
+        .iter()
+        .chain(&loaded.graph.hdr)
+        .take(1)
+        .cloned()
+        .collect();
     if job.case.motion.in_voxels() {
         wanted.extend(oracle::wanted(&loaded.graph)?);
     }
-    let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, warm.sessions.get(&job.method))?;
+    let mut session = lab.build(
+        &job.experiment,
+        &loaded,
+        job.scene.clone(),
+        wanted,
+        warm.sessions.get(&job.method),
+    )?;
     let cell = cell_of(&mut session, job)?;
     let mut lights = job.scene.lights.clone();
     // Sessions are built between the frames of one and the next: a GPU that waits for them falls to a low clock.
@@ -269,8 +364,16 @@ fn time(runner: &mut Runner, job: &Job) -> Timed {
     }
     times.extend(session.finish()?);
     let frames = times.split_off(times.len().saturating_sub(FRAMES as usize));
-    let sums = frames.iter().map(|t| t.passes.iter().map(|p| p.1).sum()).collect();
-    let bytes = session.program.memory(&session.graph).iter().map(|m| m.1).sum();
+    let sums = frames
+        .iter()
+        .map(|t| t.passes.iter().map(|p| p.1).sum())
+        .collect();
+    let bytes = session
+        .program
+        .memory(&session.graph)
+        .iter()
+        .map(|m| m.1)
+        .sum();
     warm.sessions.insert(job.method.clone(), session.share());
     Ok((median(sums), bytes))
 }

@@ -146,12 +146,16 @@ impl Suite {
     pub fn keep(&mut self, names: &[String]) -> Result<(), String> {
         let known: Vec<&str> = self.methods.iter().map(|m| m.name.as_str()).collect();
         if let Some(name) = names.iter().find(|n| !known.contains(&n.as_str())) {
-            return Err(format!("--methods {name}: the suite's methods are {}", known.join(", ")));
+            return Err(format!(
+                "--methods {name}: the suite's methods are {}",
+                known.join(", ")
+            ));
         }
         let first = self.methods.first().map(|m| m.name.clone());
         let stays = |name: &String| names.contains(name) || first.as_ref() == Some(name);
         self.methods.retain(|m| stays(&m.name));
-        self.cases.retain(|c| c.methods.is_empty() || c.methods.iter().any(stays));
+        self.cases
+            .retain(|c| c.methods.is_empty() || c.methods.iter().any(stays));
         for case in &mut self.cases {
             case.methods.retain(stays);
         }
@@ -164,8 +168,10 @@ impl Suite {
     /// # Errors
     /// All mistakes of the file and of the experiment.
     pub fn read(path: &Path) -> Result<Suite, Vec<Diagnostic>> {
-        let (file, mut source) =
-            Source::read::<SuiteFile>(path, "give the path of a suite, for example configs/stability/motion.ron")?;
+        let (file, mut source) = Source::read::<SuiteFile>(
+            path,
+            "give the path of a suite, for example configs/stability/motion.ron",
+        )?;
         let warmup = source.frames(&file.warmup, 8, (0, MAX_FRAMES));
         let frames = source.frames(&file.frames, 24, (1, MAX_FRAMES));
         let method = |(name, set): &(Loc<String>, Loc<Entries<RawText>>)| Method {
@@ -188,33 +194,65 @@ impl Suite {
                 methods: c.methods.clone(),
                 voxels: c.voxels,
             };
-            if let Some(m) = c.methods.iter().find(|m| !methods.iter().any(|k| k.name == **m)) {
-                let message = format!("case '{}' names the method '{m}', which is none of the suite's", name.value);
+            if let Some(m) = c
+                .methods
+                .iter()
+                .find(|m| !methods.iter().any(|k| k.name == **m))
+            {
+                let message = format!(
+                    "case '{}' names the method '{m}', which is none of the suite's",
+                    name.value
+                );
                 source.wrong(case.at, message);
             }
             let variant = |(label, set): &(Loc<String>, Loc<Entries<RawText>>)| {
-                let set = own.set.iter().cloned().chain(settings(&set.value)).collect();
-                Case { variant: label.value.clone(), set, ..own.clone() }
+                let set = own
+                    .set
+                    .iter()
+                    .cloned()
+                    .chain(settings(&set.value))
+                    .collect();
+                Case {
+                    variant: label.value.clone(),
+                    set,
+                    ..own.clone()
+                }
             };
             match c.variants.0.is_empty() {
                 true => cases.push(own),
                 false => cases.extend(c.variants.0.iter().map(variant)),
             }
         }
-        if let Some(s) = file.samples.as_ref().filter(|s| s.value == 0 || s.value > 1 << 20) {
+        if let Some(s) = file
+            .samples
+            .as_ref()
+            .filter(|s| s.value == 0 || s.value > 1 << 20)
+        {
             source.wrong(s.at, "samples must be 1 to 1048576");
         }
-        if let Some(b) = file.bounces.as_ref().filter(|b| b.value == 0 || b.value > 64) {
+        if let Some(b) = file
+            .bounces
+            .as_ref()
+            .filter(|b| b.value == 0 || b.value > 64)
+        {
             source.wrong(b.at, "bounces must be 1 to 64");
         }
         if methods.is_empty() || cases.is_empty() || methods.len() * cases.len() > MAX_JOBS {
-            let message = format!("a suite has at least one method and one case, and at most {MAX_JOBS} pairs of them");
+            let message = format!(
+                "a suite has at least one method and one case, and at most {MAX_JOBS} pairs of them"
+            );
             source.wrong(file.experiment.at, message);
         }
-        let chart =
-            file.chart.and_then(|c| c.value.checked(&methods, &cases).map_err(|why| source.wrong(c.at, why)).ok());
+        let chart = file.chart.and_then(|c| {
+            c.value
+                .checked(&methods, &cases)
+                .map_err(|why| source.wrong(c.at, why))
+                .ok()
+        });
         let experiment = source.experiment(&file.experiment);
-        let Some(experiment) = experiment.filter(|_| source.errors.is_empty()) else { return Err(source.errors) };
+        let Some(experiment) = experiment.filter(|_| source.errors.is_empty()) else {
+            return Err(source.errors);
+        };
         Ok(Suite {
             name: source.name(),
             text: source.text(),
@@ -249,16 +287,25 @@ impl Suite {
         let own_graph = all().rfind(|s| s.name.value == "graph");
         let mut errors = apply(&mut experiment, own_graph, &self.folder);
         let other = experiment.graph != self.experiment.graph;
-        let params = if other { known(&experiment.graph) } else { None };
+        let params = if other {
+            known(&experiment.graph)
+        } else {
+            None
+        };
         let has = |name: &str| params.as_ref().is_none_or(|p| p.index(name).is_some());
         if other {
             experiment.params.retain(|(name, _)| has(&name.value));
         }
         let own = |s: &Setting| method.set.iter().any(|m| std::ptr::eq(m, s));
-        let fits = |s: &&Setting| Field::of(&s.name.value).is_some() || own(s) || has(&s.name.value);
+        let fits =
+            |s: &&Setting| Field::of(&s.name.value).is_some() || own(s) || has(&s.name.value);
         let others = all().filter(|s| s.name.value != "graph").filter(fits);
         errors.extend(apply(&mut experiment, others, &self.folder));
-        if errors.is_empty() { Ok(experiment) } else { Err(errors) }
+        if errors.is_empty() {
+            Ok(experiment)
+        } else {
+            Err(errors)
+        }
     }
 }
 
@@ -273,10 +320,16 @@ pub fn check(home: &Workspace, path: &Path) -> Result<(), LabError> {
     let chart = suite.chart.as_ref();
     let variants = |m: &Method| chart.map_or_else(|| vec![m.clone()], |c| c.variants(m));
     let methods: Vec<Method> = suite.methods.iter().flat_map(variants).collect();
-    for (method, case) in methods.iter().flat_map(|m| suite.cases.iter().map(move |c| (m, c))) {
+    for (method, case) in methods
+        .iter()
+        .flat_map(|m| suite.cases.iter().map(move |c| (m, c)))
+    {
         if case.is_for(&method.name) {
-            let mut params = |name: &str| warm.graph(home, name).ok().map(|l| l.graph.params.clone());
-            let experiment = suite.experiment(method, case, &mut params).map_err(LabError::Input);
+            let mut params =
+                |name: &str| warm.graph(home, name).ok().map(|l| l.graph.params.clone());
+            let experiment = suite
+                .experiment(method, case, &mut params)
+                .map_err(LabError::Input);
             mistakes.take(experiment.and_then(|experiment| warm.check(home, &experiment)))?;
         }
     }

@@ -134,19 +134,30 @@ impl Motion {
             Motion::Path { from, step, .. } => vec![*from, *step],
             // A parameter's values are checked with its graph, a camera with its scene.
             Motion::Still | Motion::Parameter { .. } | Motion::Cut { .. } => vec![],
-            Motion::Camera { dolly, strafe, rise, yaw, pitch, .. } => {
-                [dolly, strafe, rise, yaw, pitch].map(|v| f64::from(*v)).to_vec()
-            }
+            Motion::Camera {
+                dolly,
+                strafe,
+                rise,
+                yaw,
+                pitch,
+                ..
+            } => [dolly, strafe, rise, yaw, pitch]
+                .map(|v| f64::from(*v))
+                .to_vec(),
             Motion::Actors { step, scale } => {
                 if scale.0 <= 0.0 || scale.1 <= 0.0 || scale.2 <= 0.0 {
                     return Err("the actors' scale must be above 0".into());
                 }
                 vec![*step, scale.0.into(), scale.1.into(), scale.2.into()]
             }
-            Motion::Light { shift, turn, .. } => [shift.0, shift.1, shift.2, *turn].map(f64::from).to_vec(),
+            Motion::Light { shift, turn, .. } => {
+                [shift.0, shift.1, shift.2, *turn].map(f64::from).to_vec()
+            }
             Motion::Switch { at, from, to, .. } => {
                 if *at == 0 || *from < 0.0 || *to < 0.0 {
-                    return Err("a switch has a frame `at` of 1 or more, and parts of 0 or more".into());
+                    return Err(
+                        "a switch has a frame `at` of 1 or more, and parts of 0 or more".into(),
+                    );
                 }
                 vec![f64::from(*from), f64::from(*to)]
             }
@@ -159,16 +170,24 @@ impl Motion {
                 if !scene.lights.iter().any(|l| l.name == *name) =>
             {
                 let known: Vec<&str> = scene.lights.iter().map(|l| l.name.as_str()).collect();
-                Err(format!("scene '{}' has no light '{name}'; it has {}", scene.name, known.join(", ")))
+                Err(format!(
+                    "scene '{}' has no light '{name}'; it has {}",
+                    scene.name,
+                    known.join(", ")
+                ))
             }
-            Motion::Actors { .. } if !scene.moves() => Err(format!("nothing is animated in scene '{}'", scene.name)),
+            Motion::Actors { .. } if !scene.moves() => {
+                Err(format!("nothing is animated in scene '{}'", scene.name))
+            }
             _ => Ok(()),
         }
     }
 
     /// The scene with its actors as large as the motion says.
     pub fn scaled_scene(&self, scene: &Scene) -> Option<Scene> {
-        let Motion::Actors { scale, .. } = self else { return None };
+        let Motion::Actors { scale, .. } = self else {
+            return None;
+        };
         if *scale == one() {
             return None;
         }
@@ -181,7 +200,13 @@ impl Motion {
 
     /// The cells' edge is asked for.
     pub fn in_voxels(&self) -> bool {
-        matches!(self, Motion::Camera { unit: Unit::Voxels, .. })
+        matches!(
+            self,
+            Motion::Camera {
+                unit: Unit::Voxels,
+                ..
+            }
+        )
     }
 
     /// The first frame after something happened at once, counted from the first measured one.
@@ -194,7 +219,11 @@ impl Motion {
 
     /// Time from frame to frame as the method gets it, s.
     pub fn delta(&self) -> f64 {
-        if let Motion::Actors { step, .. } = self { *step } else { 0.0 }
+        if let Motion::Actors { step, .. } = self {
+            *step
+        } else {
+            0.0
+        }
     }
 
     /// Frame `number`, where 0 is the first measured one and those before are negative: what moves has moved before. `cell`
@@ -207,13 +236,24 @@ impl Motion {
             return state;
         }
         match self {
-            Motion::Still | Motion::Parameter { .. } | Motion::Cut { .. } | Motion::Path { .. } => {}
-            Motion::Camera { dolly, strafe, rise, yaw, pitch, unit } => {
+            Motion::Still | Motion::Parameter { .. } | Motion::Cut { .. } | Motion::Path { .. } => {
+            }
+            Motion::Camera {
+                dolly,
+                strafe,
+                rise,
+                yaw,
+                pitch,
+                unit,
+            } => {
                 let length = n * if *unit == Unit::Voxels { cell } else { 1.0 };
                 let (eye, up) = (Vec3::from(start.camera.eye), Vec3::from(start.camera.up));
                 let view = Vec3::from(start.camera.target) - eye;
                 let forward = view.try_normalize().unwrap_or(Vec3::NEG_Z);
-                let right = forward.cross(up).try_normalize().unwrap_or(forward.any_orthonormal_vector());
+                let right = forward
+                    .cross(up)
+                    .try_normalize()
+                    .unwrap_or(forward.any_orthonormal_vector());
                 let above = right.cross(forward);
                 let eye = eye + (forward * *dolly + right * *strafe + above * *rise) * length;
                 let turn = Quat::from_axis_angle(above, (n * yaw).to_radians())
@@ -226,7 +266,11 @@ impl Motion {
                 for light in state.lights.iter_mut().filter(|l| l.name == *name) {
                     light.position += Vec3::from(*shift) * n;
                     let turned = Quat::from_rotation_y((n * turn).to_radians()) * light.direction;
-                    light.direction = if *turn == 0.0 { light.direction } else { turned.normalize_or(light.direction) };
+                    light.direction = if *turn == 0.0 {
+                        light.direction
+                    } else {
+                        turned.normalize_or(light.direction)
+                    };
                 }
             }
             Motion::Switch { name, at, from, to } => {
@@ -243,24 +287,61 @@ impl Motion {
     pub fn describe(&self) -> String {
         match self {
             Motion::Still => "still".into(),
-            Motion::Camera { dolly, strafe, rise, yaw, pitch, unit } => {
-                let length = if *unit == Unit::Voxels { " voxels" } else { " m" };
-                let parts = [("dolly", dolly, length), ("strafe", strafe, length), ("rise", rise, length)];
+            Motion::Camera {
+                dolly,
+                strafe,
+                rise,
+                yaw,
+                pitch,
+                unit,
+            } => {
+                let length = if *unit == Unit::Voxels {
+                    " voxels"
+                } else {
+                    " m"
+                };
+                let parts = [
+                    ("dolly", dolly, length),
+                    ("strafe", strafe, length),
+                    ("rise", rise, length),
+                ];
                 let turns = [("yaw", yaw, " degrees"), ("pitch", pitch, " degrees")];
                 let moved = parts.iter().chain(&turns).filter(|p| *p.1 != 0.0);
-                let list: Vec<String> = moved.map(|(name, v, unit)| format!("{name} {v}{unit}")).collect();
+                let list: Vec<String> = moved
+                    .map(|(name, v, unit)| format!("{name} {v}{unit}"))
+                    .collect();
                 format!("camera: {} a frame", list.join(", "))
             }
-            Motion::Actors { step, scale } if *scale == one() => format!("actors: {step} s a frame"),
-            Motion::Actors { step, scale: (x, y, z) } => format!("actors of {x} x {y} x {z}: {step} s a frame"),
-            Motion::Light { name, shift: (x, y, z), turn } => {
+            Motion::Actors { step, scale } if *scale == one() => {
+                format!("actors: {step} s a frame")
+            }
+            Motion::Actors {
+                step,
+                scale: (x, y, z),
+            } => format!("actors of {x} x {y} x {z}: {step} s a frame"),
+            Motion::Light {
+                name,
+                shift: (x, y, z),
+                turn,
+            } => {
                 format!("light '{name}': ({x}, {y}, {z}) m and {turn} degrees a frame")
             }
-            Motion::Switch { name, at, from, to } => format!("light '{name}': {from} to {to} at frame {at}"),
-            Motion::Cut { to: CameraChoice::Named(name), at } => format!("cut to camera '{name}' at frame {at}"),
+            Motion::Switch { name, at, from, to } => {
+                format!("light '{name}': {from} to {to} at frame {at}")
+            }
+            Motion::Cut {
+                to: CameraChoice::Named(name),
+                at,
+            } => format!("cut to camera '{name}' at frame {at}"),
             Motion::Cut { at, .. } => format!("cut to another camera at frame {at}"),
-            Motion::Path { file, from, step } => format!("camera along {file} from {from} s, {step} s a frame"),
-            Motion::Parameter { name, step: Some(step), .. } => format!("parameter '{name}': {} a frame", step.0),
+            Motion::Path { file, from, step } => {
+                format!("camera along {file} from {from} s, {step} s a frame")
+            }
+            Motion::Parameter {
+                name,
+                step: Some(step),
+                ..
+            } => format!("parameter '{name}': {} a frame", step.0),
             Motion::Parameter { name, values, .. } => {
                 let list: Vec<&str> = values.iter().map(|v| v.0.as_str()).collect();
                 format!("parameter '{name}': {}", list.join(", "))

@@ -19,12 +19,21 @@ figure{margin:1em 0}figcaption{color:#555;font-size:13px}img{max-width:100%;imag
 pub(super) fn page(report: &Report, charts: &[Chart], plot: Option<&Plot>) -> String {
     let title = format!("{}: stability", report.suite);
     let reference = match report.reference {
-        Some((samples, bounces)) => format!("path traced, {samples} samples a pixel, {bounces} bounces, one seed"),
+        Some((samples, bounces)) => {
+            format!("path traced, {samples} samples a pixel, {bounces} bounces, one seed")
+        }
         None => "none: changes are measured only where the reference does not change".into(),
     };
-    let devices: BTreeSet<&str> = report.results.iter().map(|r| r.device.name.as_str()).collect();
+    let devices: BTreeSet<&str> = report
+        .results
+        .iter()
+        .map(|r| r.device.name.as_str())
+        .collect();
     let devices = devices.into_iter().collect::<Vec<_>>().join(", ");
-    let parts: Vec<String> = parts(report).into_iter().filter(|p| report.tables.contains(p)).collect();
+    let parts: Vec<String> = parts(report)
+        .into_iter()
+        .filter(|p| report.tables.contains(p))
+        .collect();
     let body = html! {
         h1 { (title) }
         p {
@@ -76,10 +85,19 @@ fn table(part: &str, records: &[&CaseRecord]) -> Markup {
     table.column(part, |r| r.about.method.clone());
     for (_, title, value) in columns() {
         let Some(title) = title else { continue };
-        let noisy = |r: &CaseRecord| title == "E_t" && r.part(part).is_some_and(|p| p.told_apart == Some(false));
-        table.marked(title, |r| (shortly(r.part(part).and_then(&value)), noisy(r).then_some("noise")));
+        let noisy = |r: &CaseRecord| {
+            title == "E_t" && r.part(part).is_some_and(|p| p.told_apart == Some(false))
+        };
+        table.marked(title, |r| {
+            (
+                shortly(r.part(part).and_then(&value)),
+                noisy(r).then_some("noise"),
+            )
+        });
     }
-    table.column("voxel recall", |r| shortly(r.done().and_then(|m| m.voxels.as_ref()?.recall)));
+    table.column("voxel recall", |r| {
+        shortly(r.done().and_then(|m| m.voxels.as_ref()?.recall))
+    });
     table.marked("failed", |r| (cell(r.error()), Some("bad")));
     table.without_empty().html()
 }

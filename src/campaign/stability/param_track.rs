@@ -26,26 +26,48 @@ impl ParamTrack {
     ///
     /// # Errors
     /// No such parameter, one that is not only read by shaders, values that it cannot have: the text for the user.
-    pub fn of(motion: &Motion, params: &Params, warmup: usize, frames: usize) -> Result<Option<ParamTrack>, String> {
-        let Motion::Parameter { name, step, values } = motion else { return Ok(None) };
+    pub fn of(
+        motion: &Motion,
+        params: &Params,
+        warmup: usize,
+        frames: usize,
+    ) -> Result<Option<ParamTrack>, String> {
+        let Motion::Parameter { name, step, values } = motion else {
+            return Ok(None);
+        };
         let mut own = params.clone();
         // The graph's own message, with the nearest name.
         let (Some(param), Some(start)) = (params.param(name), params.get(name)) else {
             return Err(own.set(name, "0").err().unwrap_or_default());
         };
         if param.is_compiled() {
-            return Err(format!("'{name}' is compiled into the shaders and cannot move"));
+            return Err(format!(
+                "'{name}' is compiled into the shaders and cannot move"
+            ));
         }
         let steps = match step {
             Some(step) if values.is_empty() => Steps::Step(numbers(param, &step.0)?),
-            None if !values.is_empty() => {
-                Steps::Values(values.iter().map(|v| param.parse(&v.0)).collect::<Result<_, String>>()?)
+            None if !values.is_empty() => Steps::Values(
+                values
+                    .iter()
+                    .map(|v| param.parse(&v.0))
+                    .collect::<Result<_, String>>()?,
+            ),
+            _ => {
+                return Err(format!(
+                    "a motion of '{name}' needs either a `step` or `values`"
+                ));
             }
-            _ => return Err(format!("a motion of '{name}' needs either a `step` or `values`")),
         };
-        let track = ParamTrack { name: name.clone(), start: start.clone(), steps };
+        let track = ParamTrack {
+            name: name.clone(),
+            start: start.clone(),
+            steps,
+        };
         for number in [-(warmup as i64), frames as i64 - 1] {
-            param.check(&track.at(number)).map_err(|e| format!("at frame {number}: {e}"))?;
+            param
+                .check(&track.at(number))
+                .map_err(|e| format!("at frame {number}: {e}"))?;
         }
         Ok(Some(track))
     }
@@ -58,10 +80,15 @@ impl ParamTrack {
                 let index = usize::try_from(number).unwrap_or(0).min(last);
                 list.get(index).unwrap_or(&self.start).clone()
             }
-            (Steps::Step(step), Value::Float(v)) => Value::Float(v + number as f64 * step.first().unwrap_or(&0.0)),
-            (Steps::Step(step), Value::Vector(v)) => {
-                Value::Vector(v.iter().zip(step).map(|(v, s)| v + number as f64 * s).collect())
+            (Steps::Step(step), Value::Float(v)) => {
+                Value::Float(v + number as f64 * step.first().unwrap_or(&0.0))
             }
+            (Steps::Step(step), Value::Vector(v)) => Value::Vector(
+                v.iter()
+                    .zip(step)
+                    .map(|(v, s)| v + number as f64 * s)
+                    .collect(),
+            ),
             (Steps::Step(_), other) => other.clone(),
         }
     }
@@ -69,7 +96,10 @@ impl ParamTrack {
 
 /// A step: a value of the parameter's kind, without its range.
 fn numbers(param: &Param, text: &str) -> Result<Vec<f64>, String> {
-    let free = Param { range: None, ..param.clone() };
+    let free = Param {
+        range: None,
+        ..param.clone()
+    };
     match free.parse(text)? {
         Value::Float(v) => Ok(vec![v]),
         Value::Vector(v) => Ok(v),

@@ -28,14 +28,21 @@ impl Panels {
             Known::Nothing { .. } => (None, None),
         };
         let shown = |p: &Linear| -> Vec<[f64; 3]> {
-            p.rgb.iter().map(|c| c.map(|v| display(Kind::Radiance, if v.is_finite() { v } else { 0.0 }))).collect()
+            p.rgb
+                .iter()
+                .map(|c| c.map(|v| display(Kind::Radiance, if v.is_finite() { v } else { 0.0 })))
+                .collect()
         };
         let now = shown(x);
-        let mean = |list: &[[f64; 3]], i: usize| list.get(i).map_or(0.0, |c| (c[0] + c[1] + c[2]) / 3.0);
+        let mean =
+            |list: &[[f64; 3]], i: usize| list.get(i).map_or(0.0, |c| (c[0] + c[1] + c[2]) / 3.0);
         let mut difference: Vec<f64> = (0..now.len()).map(|i| mean(&now, i)).collect();
         let mut pictures = Vec::new();
         let mut less = |list: &[[f64; 3]], sign: f64| {
-            difference.iter_mut().enumerate().for_each(|(i, d)| *d -= sign * mean(list, i));
+            difference
+                .iter_mut()
+                .enumerate()
+                .for_each(|(i, d)| *d -= sign * mean(list, i));
         };
         let reference = reference.map(shown);
         match before.map(shown) {
@@ -51,14 +58,26 @@ impl Panels {
         }
         pictures.push(("the frame", now));
         pictures.extend(reference.map(|t| ("reference", t)));
-        Panels { size: (x.size.0 as usize, x.size.1 as usize), pictures, difference }
+        Panels {
+            size: (x.size.0 as usize, x.size.1 as usize),
+            pictures,
+            difference,
+        }
     }
 
     /// What they are, from the left.
     pub fn names(&self) -> Vec<String> {
-        let last =
-            if self.pictures[0].0 == "the frame before" { "change against the reference's" } else { "difference" };
-        self.pictures.iter().map(|p| p.0).chain([last]).map(String::from).collect()
+        let last = if self.pictures[0].0 == "the frame before" {
+            "change against the reference's"
+        } else {
+            "difference"
+        };
+        self.pictures
+            .iter()
+            .map(|p| p.0)
+            .chain([last])
+            .map(String::from)
+            .collect()
     }
 
     /// What full red (brighter) and blue (darker) stand for, 1/255.
@@ -71,12 +90,21 @@ impl Panels {
         let most = (self.full() / 255.0).max(1e-9);
         let signed = |d: &f64| {
             let t = (d / most).clamp(-1.0, 1.0);
-            if t > 0.0 { [1.0, 1.0 - t, 1.0 - t] } else { [1.0 + t, 1.0 + t, 1.0] }
+            if t > 0.0 {
+                [1.0, 1.0 - t, 1.0 - t]
+            } else {
+                [1.0 + t, 1.0 + t, 1.0]
+            }
         };
         let difference: Vec<[f64; 3]> = self.difference.iter().map(signed).collect();
         let (width, height) = self.size;
         let scale = WIDTH.div_ceil(width.max(1)).max(1);
-        let panels: Vec<&Vec<[f64; 3]>> = self.pictures.iter().map(|p| &p.1).chain([&difference]).collect();
+        let panels: Vec<&Vec<[f64; 3]>> = self
+            .pictures
+            .iter()
+            .map(|p| &p.1)
+            .chain([&difference])
+            .collect();
         let row = panels.len() * (width * scale + GAP) - GAP;
         let mut bytes = vec![255u8; row * height * scale * 3];
         for (p, panel) in panels.iter().enumerate() {
@@ -91,12 +119,17 @@ impl Panels {
                 }
             }
         }
-        let failed =
-            |e: &dyn std::fmt::Display| LabError::Request(format!("cannot make the worst frame's picture: {e}"));
-        let (w, h) =
-            (u32::try_from(row).map_err(|e| failed(&e))?, u32::try_from(height * scale).map_err(|e| failed(&e))?);
+        let failed = |e: &dyn std::fmt::Display| {
+            LabError::Request(format!("cannot make the worst frame's picture: {e}"))
+        };
+        let (w, h) = (
+            u32::try_from(row).map_err(|e| failed(&e))?,
+            u32::try_from(height * scale).map_err(|e| failed(&e))?,
+        );
         let mut out = Vec::new();
-        PngEncoder::new(&mut out).write_image(&bytes, w, h, ExtendedColorType::Rgb8).map_err(|e| failed(&e))?;
+        PngEncoder::new(&mut out)
+            .write_image(&bytes, w, h, ExtendedColorType::Rgb8)
+            .map_err(|e| failed(&e))?;
         Ok(out)
     }
 }

@@ -75,13 +75,24 @@ pub struct Job {
 /// # Errors
 /// All that is wrong with its settings, scenes and motions: nothing is measured then.
 pub fn plan(runner: &mut Runner, suite: &Suite, options: &Options) -> Result<Vec<Job>, LabError> {
-    if let Some(name) = options.only.iter().find(|n| !suite.cases.iter().any(|c| c.name == **n)) {
+    if let Some(name) = options
+        .only
+        .iter()
+        .find(|n| !suite.cases.iter().any(|c| c.name == **n))
+    {
         let mut known: Vec<&str> = suite.cases.iter().map(|c| c.name.as_str()).collect();
         known.dedup();
-        return Err(LabError::Request(format!("--only {name}: the suite's cases are {}", known.join(", "))));
+        return Err(LabError::Request(format!(
+            "--only {name}: the suite's cases are {}",
+            known.join(", ")
+        )));
     }
     // What the frames are compared with is part of a result.
-    let shaders = if options.reference { reference::shaders(&runner.lab.home)? } else { String::new() };
+    let shaders = if options.reference {
+        reference::shaders(&runner.lab.home)?
+    } else {
+        String::new()
+    };
     let mut jobs: Vec<Job> = Vec::new();
     let mut mistakes = Mistakes::default();
     let wanted = |c: &&Case| options.only.is_empty() || options.only.contains(&c.name);
@@ -102,23 +113,44 @@ fn job(
     (method, case, shaders): (&Method, &Case, &str),
 ) -> Result<Job, LabError> {
     let Runner { lab, warm, .. } = runner;
-    let mut params = |graph: &str| warm.graph(&lab.home, graph).ok().map(|l| l.graph.params.clone());
-    let mut experiment = suite.experiment(method, case, &mut params).map_err(LabError::Input)?;
+    let mut params = |graph: &str| {
+        warm.graph(&lab.home, graph)
+            .ok()
+            .map(|l| l.graph.params.clone())
+    };
+    let mut experiment = suite
+        .experiment(method, case, &mut params)
+        .map_err(LabError::Input)?;
     let loaded = warm.graph(&lab.home, &experiment.graph)?.clone();
     let other = experiment.graph != suite.experiment.graph;
-    let set: Vec<(&str, &str)> =
-        options.set.iter().map(|s| named("--set", s, "NAME=VALUE")).collect::<Result<_, LabError>>()?;
+    let set: Vec<(&str, &str)> = options
+        .set
+        .iter()
+        .map(|s| named("--set", s, "NAME=VALUE"))
+        .collect::<Result<_, LabError>>()?;
     let (text, settings) = lines(set, "=");
     experiment.sources.add("--set".as_ref(), text);
     let has = |s: &&Setting| !other || loaded.graph.params.index(&s.name.value).is_some();
     set_params(&mut experiment, settings.iter().filter(has));
     experiment.size = options.size.unwrap_or(experiment.size);
     check_size(experiment.size).map_err(LabError::Request)?;
-    let wrong = |why: String| LabError::Request(format!("case '{}': {why}", title(&case.name, &case.variant)));
-    let frames = options.frames.filter(|_| !case.own_frames).unwrap_or(case.frames);
-    let names: Vec<String> = parts_of(&loaded.graph).into_iter().map(|p| p.name).collect();
+    let wrong = |why: String| {
+        LabError::Request(format!(
+            "case '{}': {why}",
+            title(&case.name, &case.variant)
+        ))
+    };
+    let frames = options
+        .frames
+        .filter(|_| !case.own_frames)
+        .unwrap_or(case.frames);
+    let names: Vec<String> = parts_of(&loaded.graph)
+        .into_iter()
+        .map(|p| p.name)
+        .collect();
     let parts = names.len() as u64;
-    let values = u64::from(experiment.size.0) * u64::from(experiment.size.1) * frames as u64 * parts;
+    let values =
+        u64::from(experiment.size.0) * u64::from(experiment.size.1) * frames as u64 * parts;
     if values > MAX_VALUES {
         return Err(wrong(format!(
             "{frames} frames of {}x{} and {parts} parts are too many to keep; ask for fewer with --frames, or a smaller --size",
@@ -126,25 +158,48 @@ fn job(
         )));
     }
     if parts == 0 {
-        return Err(wrong(format!("graph '{}' has neither `parts` nor `hdr`", loaded.graph.name)));
+        return Err(wrong(format!(
+            "graph '{}' has neither `parts` nor `hdr`",
+            loaded.graph.name
+        )));
     }
     if !names.contains(&suite.pictures) {
         let (part, known) = (&suite.pictures, names.join(", "));
-        return Err(wrong(format!("no pictures of '{part}': the parts of graph '{}' are {known}", loaded.graph.name)));
+        return Err(wrong(format!(
+            "no pictures of '{part}': the parts of graph '{}' are {known}",
+            loaded.graph.name
+        )));
     }
-    let point = runner.point(experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
+    let point = runner.point(
+        experiment,
+        Vec::new(),
+        Frames {
+            warmup: case.warmup,
+            count: frames,
+        },
+    )?;
     case.motion.check(&point.scene).map_err(wrong)?;
     let params = point.experiment.params_over(&loaded.graph.params)?;
     let track = ParamTrack::of(&case.motion, &params, case.warmup, frames).map_err(wrong)?;
     let reference_moves = match &track {
         Some(track) => {
-            let shared = &runner.warm.graph(&runner.lab.home, reference::GRAPH)?.graph.params;
+            let shared = &runner
+                .warm
+                .graph(&runner.lab.home, reference::GRAPH)?
+                .graph
+                .params;
             shared.index(&track.name).is_some()
         }
         None => false,
     };
-    if let Some(at) = case.motion.event().filter(|at| frames.saturating_sub(2) < *at) {
-        return Err(wrong(format!("what happens at frame {at} needs two frames more, there are {frames}")));
+    if let Some(at) = case
+        .motion
+        .event()
+        .filter(|at| frames.saturating_sub(2) < *at)
+    {
+        return Err(wrong(format!(
+            "what happens at frame {at} needs two frames more, there are {frames}"
+        )));
     }
     let cameras = Cameras::of(&case.motion, &point.experiment, &point.scene, &suite.folder)?;
     let (scene, hash) = match case.motion.scaled_scene(&point.scene) {
@@ -160,11 +215,16 @@ fn job(
         lights: scene.lights.clone(),
         setting: None,
     };
-    let samples = options.reference.then(|| options.samples.unwrap_or(suite.samples));
+    let samples = options
+        .reference
+        .then(|| options.samples.unwrap_or(suite.samples));
     let device = &runner.lab.gpu.info;
     let device = format!("{} {} {}", device.name, device.driver, device.api);
     let work = content_id([point.id, format!("{:?}", case.motion), device], DIGITS);
-    let asked = format!("{samples:?} {} {} {} {} {shaders}", suite.bounces, suite.seed, case.voxels, suite.pictures);
+    let asked = format!(
+        "{samples:?} {} {} {} {} {shaders}",
+        suite.bounces, suite.seed, case.voxels, suite.pictures
+    );
     // Two names of the same thing are two rows.
     let names = format!("{:?} {:?} {:?}", method.name, case.name, case.variant);
     let id = content_id([&work, &asked, &names], DIGITS);
@@ -193,7 +253,11 @@ impl runner::Job for Job {
     }
 
     fn title(&self) -> String {
-        format!("{}, {}", title(&self.case.name, &self.case.variant), self.method)
+        format!(
+            "{}, {}",
+            title(&self.case.name, &self.case.variant),
+            self.method
+        )
     }
 
     fn about(&self, _: &mut Runner, _: &Folder) -> Result<About, LabError> {
@@ -218,9 +282,20 @@ impl runner::Job for Job {
 impl Job {
     /// What frame `number` sees; see [`super::Motion::frame_state`].
     pub fn frame_state(&self, number: i64, cell: f32) -> FrameState {
-        let setting = self.track.as_ref().filter(|_| self.reference_moves).map(|m| (m.name.clone(), m.at(number)));
+        let setting = self
+            .track
+            .as_ref()
+            .filter(|_| self.reference_moves)
+            .map(|m| (m.name.clone(), m.at(number)));
         let state = self.case.motion.frame_state(&self.start, number, cell);
-        let camera = self.cameras.as_ref().map_or(state.camera, |c| c.at(&self.start.camera, number));
-        FrameState { camera, setting, ..state }
+        let camera = self
+            .cameras
+            .as_ref()
+            .map_or(state.camera, |c| c.at(&self.start.camera, number));
+        FrameState {
+            camera,
+            setting,
+            ..state
+        }
     }
 }

@@ -70,7 +70,10 @@ impl PartResult {
     /// The noise of the last frame's reference; no number where it is not known.
     pub fn reference_noise(&self) -> Noise {
         let known = |v: Option<f64>| v.unwrap_or(f64::NAN);
-        Noise { relmse: known(self.noise), structure: known(self.structure_noise) }
+        Noise {
+            relmse: known(self.noise),
+            structure: known(self.structure_noise),
+        }
     }
 }
 
@@ -194,12 +197,21 @@ impl CaseRecord {
 
 /// A case with its variant, for people.
 pub(super) fn title(case: &str, variant: &str) -> String {
-    if variant.is_empty() { case.into() } else { format!("{case}: {variant}") }
+    if variant.is_empty() {
+        case.into()
+    } else {
+        format!("{case}: {variant}")
+    }
 }
 
 /// The records of a suite's folder.
 pub(super) fn folder(path: &Path) -> Folder {
-    Folder { path: path.into(), kind: "results", schema: RESULT_SCHEMA, most: MAX_FILE }
+    Folder {
+        path: path.into(),
+        kind: "results",
+        schema: RESULT_SCHEMA,
+        most: MAX_FILE,
+    }
 }
 
 /// Path of a result's picture in the folder.

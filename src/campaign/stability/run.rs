@@ -35,19 +35,38 @@ pub fn run(
     }
     let folder = folder(&options.folder);
     let samples = options.samples.unwrap_or(suite.samples);
-    let tracing = options.reference.then_some(Tracing { samples, bounces: suite.bounces, seed: suite.seed });
+    let tracing = options.reference.then_some(Tracing {
+        samples,
+        bounces: suite.bounces,
+        seed: suite.seed,
+    });
     // What has failed is tried again, and so is what has lost its picture.
     let mut kept = |_: &mut Runner, job: &Job| {
-        let whole =
-            |r: &CaseRecord| r.done().is_some_and(|m| m.worst.is_none() || folder.path.join(picture(&r.id)).is_file());
+        let whole = |r: &CaseRecord| {
+            r.done()
+                .is_some_and(|m| m.worst.is_none() || folder.path.join(picture(&r.id)).is_file())
+        };
         Ok(folder.read(&job.id).filter(whole))
     };
-    let mut measured = |runner: &mut Runner, job: &Job| measure(runner, job, tracing, &suite.pictures);
-    let results = runner.run(&folder, &jobs.iter().collect::<Vec<_>>(), &mut kept, &mut measured)?;
+    let mut measured =
+        |runner: &mut Runner, job: &Job| measure(runner, job, tracing, &suite.pictures);
+    let results = runner.run(
+        &folder,
+        &jobs.iter().collect::<Vec<_>>(),
+        &mut kept,
+        &mut measured,
+    )?;
     let counts = Counts::of(&results);
-    let graph = &runner.warm.graph(&runner.lab.home, &suite.experiment.graph)?.graph;
+    let graph = &runner
+        .warm
+        .graph(&runner.lab.home, &suite.experiment.graph)?
+        .graph;
     let focus = focus_of(graph).map(|p| (p.name.clone(), p.title.clone()));
-    let tables = parts_of(graph).into_iter().filter(|p| p.kind == Kind::Radiance).map(|p| p.name).collect();
+    let tables = parts_of(graph)
+        .into_iter()
+        .filter(|p| p.kind == Kind::Radiance)
+        .map(|p| p.name)
+        .collect();
     let report = Report {
         schema: SCHEMA.into(),
         version: env!("CARGO_PKG_VERSION").into(),
@@ -76,11 +95,22 @@ fn write(report: &Report, spec: Option<&CostChart>, options: &Options) -> Result
         ("stability.csv".into(), table::rows(report)?.into_bytes()),
         ("frames.csv".into(), table::frames(report)?.into_bytes()),
     ];
-    files.extend(charts.iter().map(|c| (format!("charts/{}.svg", c.name), c.svg.clone().into_bytes())));
+    files.extend(
+        charts
+            .iter()
+            .map(|c| (format!("charts/{}.svg", c.name), c.svg.clone().into_bytes())),
+    );
     if let Some(plot) = &plot {
         files.push(("cost.csv".into(), plot.csv()?.into_bytes()));
-        files.extend(plot.svg.iter().map(|svg| ("charts/cost.svg".into(), svg.clone().into_bytes())));
+        files.extend(
+            plot.svg
+                .iter()
+                .map(|svg| ("charts/cost.svg".into(), svg.clone().into_bytes())),
+        );
     }
-    files.push(("index.html".into(), page::page(report, &charts, plot.as_ref()).into_bytes()));
+    files.push((
+        "index.html".into(),
+        page::page(report, &charts, plot.as_ref()).into_bytes(),
+    ));
     write_files(&options.folder, &files)
 }

@@ -44,7 +44,11 @@ pub fn change(x: [&Linear; 2], r: Option<[&Linear; 2]>) -> Change {
         errors.push(most);
         count += 3;
     }
-    Change { rms: (sum / count.max(1) as f64).sqrt(), p999: percentile(&mut errors, 0.999), jump: jump * 255.0 }
+    Change {
+        rms: (sum / count.max(1) as f64).sqrt(),
+        p999: percentile(&mut errors, 0.999),
+        jump: jump * 255.0,
+    }
 }
 
 /// The least value that is not less than this part of all: nearest rank. 0 of nothing.
@@ -71,7 +75,11 @@ pub struct Flicker {
 pub fn flicker(differences: &[Vec<f32>], areas: &[f64]) -> Flicker {
     let frames = differences.len() as f64;
     let index = |(i, area): (usize, &f64)| {
-        let values = || differences.iter().map(|f| f.get(i).map_or(0.0, |v| f64::from(*v)));
+        let values = || {
+            differences
+                .iter()
+                .map(|f| f.get(i).map_or(0.0, |v| f64::from(*v)))
+        };
         let mean = values().sum::<f64>() / frames;
         let above: f64 = values().map(|v| (v - mean).max(0.0)).sum();
         match above > 0.0 {
@@ -82,7 +90,10 @@ pub fn flicker(differences: &[Vec<f32>], areas: &[f64]) -> Flicker {
     };
     let mut list: Vec<f64> = areas.iter().enumerate().map(index).collect();
     let mean = list.iter().sum::<f64>() / list.len().max(1) as f64;
-    Flicker { mean, p99: percentile(&mut list, 0.99) }
+    Flicker {
+        mean,
+        p99: percentile(&mut list, 0.99),
+    }
 }
 
 /// What [`flicker`] takes, gathered frame by frame.
@@ -106,9 +117,13 @@ impl FlickerSeries {
             self.first.clone_from(&now);
             self.areas = vec![0.0; now.len()];
         }
-        self.areas.iter_mut().zip(&now).for_each(|(area, n)| *area += n.0.max(0.0));
+        self.areas
+            .iter_mut()
+            .zip(&now)
+            .for_each(|(area, n)| *area += n.0.max(0.0));
         let difference = |(n, f): (&(f64, f64), &(f64, f64))| ((n.0 - f.0) - (n.1 - f.1)) as f32;
-        self.differences.push(now.iter().zip(&self.first).map(difference).collect());
+        self.differences
+            .push(now.iter().zip(&self.first).map(difference).collect());
     }
 
     pub fn index(&self) -> Flicker {
@@ -140,13 +155,18 @@ pub fn step(signal: &[f64], at: usize) -> Option<Step> {
     let late = after.iter().rposition(|v| off(*v).abs() > SETTLED);
     let at_rest = off(after[after.len() - 2]).abs() <= AT_REST;
     let overshoot = after.iter().map(|v| off(*v)).fold(0.0, f64::max);
-    Some(Step { frames: at_rest.then(|| late.map_or(1, |l| l + 2)), overshoot })
+    Some(Step {
+        frames: at_rest.then(|| late.map_or(1, |l| l + 2)),
+        overshoot,
+    })
 }
 
 /// Frames, that of the event included, until an error stays within 5 % of its last value: 1 is at once. None without two
 /// frames after it, where an error is not known, and where it still moved by more than 1 % at the end.
 pub fn settling(errors: &[f64], at: usize) -> Option<usize> {
-    let after = errors.get(at..).filter(|a| a.len() >= 2 && a.iter().all(|e| e.is_finite()))?;
+    let after = errors
+        .get(at..)
+        .filter(|a| a.len() >= 2 && a.iter().all(|e| e.is_finite()))?;
     let last = *after.last()?;
     let within = |e: f64, part: f64| (e - last).abs() <= part * last;
     let late = after.iter().rposition(|e| !within(*e, SETTLED));

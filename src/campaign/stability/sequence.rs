@@ -41,14 +41,23 @@ pub(super) fn measure(
     tracing: Option<Tracing>,
     pictures: &str,
 ) -> Result<(Measured, Vec<File>), LabError> {
-    let loaded = runner.warm.graph(&runner.lab.home, &job.experiment.graph)?.clone();
+    let loaded = runner
+        .warm
+        .graph(&runner.lab.home, &job.experiment.graph)?
+        .clone();
     let motion = &job.case.motion;
-    let mut wanted: Vec<String> = parts_of(&loaded.graph).into_iter().map(|p| p.texture).collect();
+    let mut wanted: Vec<String> = parts_of(&loaded.graph)
+        .into_iter()
+        .map(|p| p.texture)
+        .collect();
     if job.case.voxels && oracle::makes_voxels(&loaded.graph) || motion.in_voxels() {
         wanted.extend(oracle::wanted(&loaded.graph)?);
     }
     let reuse = runner.warm.sessions.get(&job.method);
-    let mut session = runner.lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, reuse)?;
+    let mut session =
+        runner
+            .lab
+            .build(&job.experiment, &loaded, job.scene.clone(), wanted, reuse)?;
     let cell = cell_of(&mut session, job)?;
     let (mut times, mut warnings) = (Vec::new(), Vec::new());
     let mut series: BTreeMap<String, PartSeries> = BTreeMap::new();
@@ -61,7 +70,9 @@ pub(super) fn measure(
     for number in -warmup..frames {
         let state = place(&runner.lab, &mut session, job, number, cell, &mut lights)?;
         times.extend(session.frame(motion.delta())?);
-        let Ok(frame) = usize::try_from(number) else { continue };
+        let Ok(frame) = usize::try_from(number) else {
+            continue;
+        };
         times.extend(session.finish()?);
         for message in session.failed_checks()? {
             if !warnings.contains(&message) {
@@ -85,7 +96,11 @@ pub(super) fn measure(
         }
         let earlier = before.as_ref().and_then(|b| b.1.as_ref());
         for (part, x) in session.parts()? {
-            let lost = x.rgb.iter().filter(|c| !c.iter().all(|v| v.is_finite())).count();
+            let lost = x
+                .rgb
+                .iter()
+                .filter(|c| !c.iter().all(|v| v.is_finite()))
+                .count();
             let note = format!("pixels of '{part}' are no number and left out of its scores");
             if lost > 0 && !warnings.iter().any(|w| w.ends_with(&note)) {
                 warnings.push(format!("frame {frame}, perhaps others too: {lost} {note}"));
@@ -102,19 +117,53 @@ pub(super) fn measure(
         }
         before = Some((state, reference));
     }
-    let times: Vec<f64> = times.iter().skip(job.case.warmup).map(|t| t.gpu_ms).collect();
+    let times: Vec<f64> = times
+        .iter()
+        .skip(job.case.warmup)
+        .map(|t| t.gpu_ms)
+        .collect();
     let last = before.map_or(job.start.time, |b| b.0.time);
     let voxels = voxels(&mut session, job, last, &mut warnings)?;
-    runner.warm.sessions.insert(job.method.clone(), session.share());
+    runner
+        .warm
+        .sessions
+        .insert(job.method.clone(), session.share());
     let (event, switched) = (motion.event(), matches!(motion, Motion::Switch { .. }));
-    let memory_bytes = session.program.memory(&session.graph).iter().map(|m| m.1).sum();
-    let parts = series.into_iter().map(|(name, s)| (name, s.finish(event, switched))).collect();
-    let shown = worst.as_ref().map(|w| Ok::<_, LabError>((picture(&job.id), w.panels.png()?))).transpose()?;
-    let worst =
-        worst.map(|w| Worst { part: pictures.into(), frame: w.frame, full: w.panels.full(), panels: w.panels.names() });
+    let memory_bytes = session
+        .program
+        .memory(&session.graph)
+        .iter()
+        .map(|m| m.1)
+        .sum();
+    let parts = series
+        .into_iter()
+        .map(|(name, s)| (name, s.finish(event, switched)))
+        .collect();
+    let shown = worst
+        .as_ref()
+        .map(|w| Ok::<_, LabError>((picture(&job.id), w.panels.png()?)))
+        .transpose()?;
+    let worst = worst.map(|w| Worst {
+        part: pictures.into(),
+        frame: w.frame,
+        full: w.panels.full(),
+        panels: w.panels.names(),
+    });
     let frame_ms = median(times);
     let files = shown.into_iter().collect();
-    Ok((Measured { frame_ms, memory_bytes, samples, event, parts, voxels, worst, warnings }, files))
+    Ok((
+        Measured {
+            frame_ms,
+            memory_bytes,
+            samples,
+            event,
+            parts,
+            voxels,
+            worst,
+            warnings,
+        },
+        files,
+    ))
 }
 
 /// Sets a parameter for the next frame.
@@ -146,19 +195,38 @@ fn reference_of(
     }
     let scene = match state.lights == job.scene.lights {
         true => job.scene.clone(),
-        false => Arc::new(Scene { lights: state.lights.clone(), ..Scene::clone(&job.scene) }),
+        false => Arc::new(Scene {
+            lights: state.lights.clone(),
+            ..Scene::clone(&job.scene)
+        }),
     };
-    let Tracing { samples, bounces, seed } = tracing;
-    let wanted = Wanted { bounces, samples: Some(samples), seed: Some(seed) };
+    let Tracing {
+        samples,
+        bounces,
+        seed,
+    } = tracing;
+    let wanted = Wanted {
+        bounces,
+        samples: Some(samples),
+        seed: Some(seed),
+    };
     let subject = format!("{} {:?} {state:?}", job.scene_hash, experiment.size);
     runner.reference(&experiment, &scene, &subject, wanted)
 }
 
 /// What is known of a part's reference; `earlier` is that of the frame before.
-fn known<'a>(part: &str, reference: Option<&'a Reference>, earlier: Option<&'a Reference>, changed: bool) -> Known<'a> {
+fn known<'a>(
+    part: &str,
+    reference: Option<&'a Reference>,
+    earlier: Option<&'a Reference>,
+    changed: bool,
+) -> Known<'a> {
     let of = |t: Option<&'a Reference>| t.and_then(|t| t.parts.get(part));
     match (of(reference), of(earlier)) {
-        (Some(now), before) => Known::Reference { now, before: before.filter(|_| changed) },
+        (Some(now), before) => Known::Reference {
+            now,
+            before: before.filter(|_| changed),
+        },
         (None, _) => Known::Nothing { changed },
     }
 }
@@ -192,7 +260,9 @@ pub(super) fn place(
     session.set_time(state.time);
     if state.lights != *lights {
         if !session.set_lights(&state.lights, job.scene.sky) {
-            return Err(LabError::Request("a light that moves must keep its kind and its shadow".into()));
+            return Err(LabError::Request(
+                "a light that moves must keep its kind and its shadow".into(),
+            ));
         }
         lights.clone_from(&state.lights);
     }

@@ -12,7 +12,10 @@ pub(super) enum Known<'a> {
     /// Nothing; whether it may have changed since the frame before.
     Nothing { changed: bool },
     /// The reference now, and at the frame before where it is another one.
-    Reference { now: &'a ReferencePart, before: Option<&'a ReferencePart> },
+    Reference {
+        now: &'a ReferencePart,
+        before: Option<&'a ReferencePart>,
+    },
 }
 
 /// Gathers the scores of a part.
@@ -49,7 +52,9 @@ impl PartSeries {
             frame: self.frames.len(),
             mean: number(mean_luminance(&x)),
             reference_mean: reference.and_then(|t| number(mean_luminance(&t.mean))),
-            relmse: reference.and_then(|t| relmse(&x, &t.mean).ok()).and_then(number),
+            relmse: reference
+                .and_then(|t| relmse(&x, &t.mean).ok())
+                .and_then(number),
             ..FrameScore::default()
         };
         if let Some(previous) = &self.before {
@@ -60,13 +65,16 @@ impl PartSeries {
                     frame.change = Some(change(now, None));
                     frame.noise = reference.map(|_| 0.0);
                 }
-                Known::Reference { now: reference, before: Some(before) } => {
+                Known::Reference {
+                    now: reference,
+                    before: Some(before),
+                } => {
                     frame.change = Some(change(now, Some([&before.mean, &reference.mean])));
-                    frame.noise = before
-                        .halves
-                        .as_ref()
-                        .zip(reference.halves.as_ref())
-                        .map(|(before, now)| change([&before[0], &now[0]], Some([&before[1], &now[1]])).rms);
+                    frame.noise = before.halves.as_ref().zip(reference.halves.as_ref()).map(
+                        |(before, now)| {
+                            change([&before[0], &now[0]], Some([&before[1], &now[1]])).rms
+                        },
+                    );
                 }
             }
         }
@@ -84,7 +92,10 @@ impl PartSeries {
                 self.result.structure_noise = number(t.noise.structure);
             }
         }
-        let bad = frame.change.map(|c| c.rms).or(frame.relmse.filter(|_| self.before.is_none()));
+        let bad = frame
+            .change
+            .map(|c| c.rms)
+            .or(frame.relmse.filter(|_| self.before.is_none()));
         self.frames.push(frame);
         self.before = Some(x);
         bad
@@ -98,7 +109,8 @@ impl PartSeries {
     /// The scores of all frames; `event` is the first frame after a switch or a cut, `switched` says which.
     pub fn finish(mut self, event: Option<usize>, switched: bool) -> PartResult {
         let changes: Vec<_> = self.frames.iter().filter_map(|f| f.change).collect();
-        let root = |list: &[f64]| (list.iter().map(|v| v * v).sum::<f64>() / list.len() as f64).sqrt();
+        let root =
+            |list: &[f64]| (list.iter().map(|v| v * v).sum::<f64>() / list.len() as f64).sqrt();
         if self.known && !changes.is_empty() {
             let rms: Vec<f64> = changes.iter().map(|c| c.rms).collect();
             self.result.e = Some(root(&rms));
@@ -109,14 +121,25 @@ impl PartSeries {
             self.result.flicker = Some(self.flicker.index());
             let noisy = self.result.e_noise.is_some() && self.frames.len() > 1;
             self.result.flicker_noise = noisy.then(|| self.noise.index().mean);
-            self.result.told_apart = self.result.e.zip(self.result.e_noise).map(|(e, n)| !within_noise(e, Some(n)));
+            self.result.told_apart = self
+                .result
+                .e
+                .zip(self.result.e_noise)
+                .map(|(e, n)| !within_noise(e, Some(n)));
         }
         if let Some(at) = event {
             let signal = |value: fn(&FrameScore) -> Option<f64>| -> Vec<f64> {
-                self.frames.iter().map(|f| value(f).unwrap_or(f64::NAN)).collect()
+                self.frames
+                    .iter()
+                    .map(|f| value(f).unwrap_or(f64::NAN))
+                    .collect()
             };
             // Another view has another mean: that is no step of the method's.
-            self.result.step = if switched { step(&signal(|f| f.mean), at) } else { None };
+            self.result.step = if switched {
+                step(&signal(|f| f.mean), at)
+            } else {
+                None
+            };
             self.result.settling = settling(&signal(|f| f.relmse), at);
         }
         self.result.frames = self.frames;

@@ -17,7 +17,14 @@ use std::path::Path;
 /// Largest file, bytes.
 const MAX_BYTES: usize = 200_000;
 /// Widths of a panel, pixels, and qualities of JPEG, percent: the first with which the file is small enough.
-const TRIALS: [(u32, u8); 6] = [(240, 90), (240, 80), (200, 80), (200, 70), (160, 70), (120, 60)];
+const TRIALS: [(u32, u8); 6] = [
+    (240, 90),
+    (240, 80),
+    (200, 80),
+    (200, 70),
+    (160, 70),
+    (120, 60),
+];
 /// Width of the texts, pixels.
 const TEXT: u32 = 250;
 /// Around everything, pixels.
@@ -47,8 +54,13 @@ pub struct Failure {
 /// The worst case of each method among those of one frame, by relMSE, and among those of several, by E_t: of those that are
 /// told apart from the reference's noise, if any is.
 pub fn failures(report: &Report) -> Vec<Failure> {
-    let methods: IndexSet<&str> = report.results.iter().map(|r| r.about.method.as_str()).collect();
-    let kinds = [false, true].map(|moving| methods.iter().filter_map(move |m| worst(report, m, moving)));
+    let methods: IndexSet<&str> = report
+        .results
+        .iter()
+        .map(|r| r.about.method.as_str())
+        .collect();
+    let kinds =
+        [false, true].map(|moving| methods.iter().filter_map(move |m| worst(report, m, moving)));
     let mut list: Vec<Failure> = kinds.into_iter().flatten().collect();
     list.sort_by_key(|f| methods.get_index_of(f.method.as_str()));
     list
@@ -64,9 +76,20 @@ fn worst(report: &Report, method: &str, moving: bool) -> Option<Failure> {
         };
         let metric = format!("{metric} of {}", worst.part);
         let (case, id, method) = (r.about.title(), r.id.clone(), r.about.method.clone());
-        Some(Failure { method, case, metric, value, noise, id, worst })
+        Some(Failure {
+            method,
+            case,
+            metric,
+            value,
+            noise,
+            id,
+            worst,
+        })
     };
-    let own = report.results.iter().filter(|r| r.about.method == method && (r.about.frames > 1) == moving);
+    let own = report
+        .results
+        .iter()
+        .filter(|r| r.about.method == method && (r.about.frames > 1) == moving);
     own.filter_map(failure).max_by(|a, b| {
         (a.above_noise(), a.value)
             .partial_cmp(&(b.above_noise(), b.value))
@@ -81,10 +104,15 @@ impl Failure {
     }
 
     fn lines(&self) -> String {
-        let noise = self.noise.map_or(String::new(), |n| format!(" (noise {})", short(n)));
+        let noise = self
+            .noise
+            .map_or(String::new(), |n| format!(" (noise {})", short(n)));
         let (frame, full) = (self.worst.frame, short(self.worst.full));
         let (metric, value) = (&self.metric, short(self.value));
-        format!("{}\n{}\n{metric} {value}{noise}\nframe {frame}, full red, blue {full}/255", self.method, self.case)
+        format!(
+            "{}\n{}\n{metric} {value}{noise}\nframe {frame}, full red, blue {full}/255",
+            self.method, self.case
+        )
     }
 }
 
@@ -93,8 +121,18 @@ pub fn table(list: &[Failure]) -> String {
     let mut out = String::from("| Method | Worst case | Figure | Noise |\n|---|---|---|---|\n");
     for f in list {
         let noise = f.noise.map_or("-".into(), short);
-        let mark = if f.above_noise() { "" } else { ", not told apart" };
-        out += &format!("| {} | {} | {} {}{mark} | {noise} |\n", f.method, f.case, f.metric, short(f.value));
+        let mark = if f.above_noise() {
+            ""
+        } else {
+            ", not told apart"
+        };
+        out += &format!(
+            "| {} | {} | {} {}{mark} | {noise} |\n",
+            f.method,
+            f.case,
+            f.metric,
+            short(f.value)
+        );
     }
     out
 }
@@ -104,7 +142,10 @@ pub fn table(list: &[Failure]) -> String {
 /// # Errors
 /// Pictures that cannot be read.
 pub fn sheet(list: &[Failure], folder: &Path) -> Result<Vec<u8>, LabError> {
-    let rows: Vec<[RgbImage; 3]> = list.iter().map(|f| panels(f, folder)).collect::<Result<_, LabError>>()?;
+    let rows: Vec<[RgbImage; 3]> = list
+        .iter()
+        .map(|f| panels(f, folder))
+        .collect::<Result<_, LabError>>()?;
     let mut bytes = Vec::new();
     for (width, quality) in TRIALS {
         let sheet = draw(list, &rows, width);
@@ -126,19 +167,31 @@ fn panels(failure: &Failure, folder: &Path) -> Result<[RgbImage; 3], LabError> {
     let picture = read.to_rgb8();
     let names = &failure.worst.panels;
     let count = u32::try_from(names.len()).unwrap_or(1).max(1);
-    let width = (picture.width() + BETWEEN).saturating_div(count).saturating_sub(BETWEEN).max(1);
+    let width = (picture.width() + BETWEEN)
+        .saturating_div(count)
+        .saturating_sub(BETWEEN)
+        .max(1);
     let panel = |i: Option<usize>| match i.and_then(|i| u32::try_from(i).ok()) {
         Some(i) => crop_imm(&picture, i * (width + BETWEEN), 0, width, picture.height()).to_image(),
         None => RgbImage::from_pixel(width, picture.height(), Rgb([255; 3])),
     };
     let named = |name: &str| names.iter().position(|n| n == name);
-    Ok([panel(named("the frame")), panel(named("reference")), panel(names.len().checked_sub(1))])
+    Ok([
+        panel(named("the frame")),
+        panel(named("reference")),
+        panel(names.len().checked_sub(1)),
+    ])
 }
 
 fn draw(list: &[Failure], rows: &[[RgbImage; 3]], width: u32) -> RgbImage {
     let fit = |p: &RgbImage| {
-        let height = (u64::from(p.height()) * u64::from(width) / u64::from(p.width().max(1))).clamp(1, 4096) as u32;
-        let filter = if p.width() > width { FilterType::Triangle } else { FilterType::Nearest };
+        let height = (u64::from(p.height()) * u64::from(width) / u64::from(p.width().max(1)))
+            .clamp(1, 4096) as u32;
+        let filter = if p.width() > width {
+            FilterType::Triangle
+        } else {
+            FilterType::Nearest
+        };
         resize(p, width, height, filter)
     };
     let rows: Vec<[RgbImage; 3]> = rows.iter().map(|r| r.each_ref().map(fit)).collect();
@@ -152,7 +205,13 @@ fn draw(list: &[Failure], rows: &[[RgbImage; 3]], width: u32) -> RgbImage {
     }
     let mut top = HEAD;
     for (failure, row) in list.iter().zip(&rows) {
-        write(&mut sheet, &mut fonts, (GAP, top), TEXT - GAP, &failure.lines());
+        write(
+            &mut sheet,
+            &mut fonts,
+            (GAP, top),
+            TEXT - GAP,
+            &failure.lines(),
+        );
         for (column, panel) in (0..).zip(row) {
             image::imageops::replace(&mut sheet, panel, left(column).into(), top.into());
         }
@@ -162,22 +221,44 @@ fn draw(list: &[Failure], rows: &[[RgbImage; 3]], width: u32) -> RgbImage {
 }
 
 /// Black text on a picture.
-fn write(picture: &mut RgbImage, fonts: &mut Fonts, (left, top): (u32, u32), width: u32, text: &str) {
+fn write(
+    picture: &mut RgbImage,
+    fonts: &mut Fonts,
+    (left, top): (u32, u32),
+    width: u32,
+    text: &str,
+) {
     let mut view = fonts.with_pixels_per_point(1.0);
-    let galley = view.layout(text.to_string(), FontId::proportional(14.0), Color32::BLACK, width as f32);
+    let galley = view.layout(
+        text.to_string(),
+        FontId::proportional(14.0),
+        Color32::BLACK,
+        width as f32,
+    );
     let atlas = view.image();
     for row in &galley.rows {
         for glyph in row.glyphs.iter().filter(|g| !g.uv_rect.is_nothing()) {
-            let (uv, at) = (&glyph.uv_rect, row.pos + glyph.pos.to_vec2() + glyph.uv_rect.offset);
+            let (uv, at) = (
+                &glyph.uv_rect,
+                row.pos + glyph.pos.to_vec2() + glyph.uv_rect.offset,
+            );
             for (y, v) in (uv.min[1]..uv.max[1]).enumerate() {
                 for (x, u) in (uv.min[0]..uv.max[0]).enumerate() {
                     let covered = atlas[(usize::from(u), usize::from(v))].a();
-                    let (x, y) = (at.x.round() as i64 + x as i64, at.y.round() as i64 + y as i64);
-                    let place = (u32::try_from(x + i64::from(left)), u32::try_from(y + i64::from(top)));
+                    let (x, y) = (
+                        at.x.round() as i64 + x as i64,
+                        at.y.round() as i64 + y as i64,
+                    );
+                    let place = (
+                        u32::try_from(x + i64::from(left)),
+                        u32::try_from(y + i64::from(top)),
+                    );
                     if let (Ok(x), Ok(y)) = place
                         && let Some(pixel) = picture.get_pixel_mut_checked(x, y)
                     {
-                        pixel.0 = pixel.0.map(|c| (u32::from(c) * u32::from(255 - covered) / 255) as u8);
+                        pixel.0 = pixel
+                            .0
+                            .map(|c| (u32::from(c) * u32::from(255 - covered) / 255) as u8);
                     }
                 }
             }

@@ -24,20 +24,34 @@ const CHANGES: [(&str, &str, Of); 10] = [
     ("flicker mean", "flicker", |p| p.flicker.map(|f| f.mean)),
     ("flicker p99", "its p99", |p| p.flicker.map(|f| f.p99)),
     ("flicker noise", "its noise", |p| p.flicker_noise),
-    ("convergence frames", "frames to 5 %", |p| p.step.and_then(|s| s.frames).map(|f| f as f64)),
+    ("convergence frames", "frames to 5 %", |p| {
+        p.step.and_then(|s| s.frames).map(|f| f as f64)
+    }),
     ("overshoot", "overshoot", |p| p.step.map(|s| s.overshoot)),
-    ("settling frames", "settling frames", |p| p.settling.map(|f| f as f64)),
+    ("settling frames", "settling frames", |p| {
+        p.settling.map(|f| f as f64)
+    }),
 ];
 
 /// The columns of every part: changes, then the scores of the last frame.
 pub(super) fn columns() -> Vec<Column> {
-    let mut list: Vec<Column> =
-        CHANGES.iter().map(|(title, page, v)| (String::from(*title), Some(*page), Box::new(*v) as _)).collect();
+    let mut list: Vec<Column> = CHANGES
+        .iter()
+        .map(|(title, page, v)| (String::from(*title), Some(*page), Box::new(*v) as _))
+        .collect();
     for metric in METRICS {
         let page = (metric.best != Best::Nowhere).then_some(metric.title);
-        list.push((metric.title.into(), page, Box::new(|p| p.scores.as_ref().map(|s| s.get(metric.key)))));
+        list.push((
+            metric.title.into(),
+            page,
+            Box::new(|p| p.scores.as_ref().map(|s| s.get(metric.key))),
+        ));
         if let Some(of) = &metric.noise {
-            list.push((format!("{} noise", metric.title), None, Box::new(|p| Some((of.of)(p.reference_noise())))));
+            list.push((
+                format!("{} noise", metric.title),
+                None,
+                Box::new(|p| Some((of.of)(p.reference_noise()))),
+            ));
         }
     }
     list
@@ -45,7 +59,13 @@ pub(super) fn columns() -> Vec<Column> {
 
 /// All parts that results have.
 pub(super) fn parts(report: &Report) -> Vec<String> {
-    total_first(report.results.iter().filter_map(|r| r.done()).flat_map(|m| m.parts.keys()))
+    total_first(
+        report
+            .results
+            .iter()
+            .filter_map(|r| r.done())
+            .flat_map(|m| m.parts.keys()),
+    )
 }
 
 /// A row for every method in every case.
@@ -55,7 +75,9 @@ pub(super) fn rows(report: &Report) -> Result<String, LabError> {
     table.column("case", |r| r.about.case.clone());
     table.column("variant", |r| r.about.variant.clone());
     table.column("method", |r| r.about.method.clone());
-    table.column("outcome", |r| if r.done().is_some() { "done" } else { "failed" }.into());
+    table.column("outcome", |r| {
+        if r.done().is_some() { "done" } else { "failed" }.into()
+    });
     table.column("error", |r| cell(r.error()));
     table.column("scene", |r| r.about.scene.clone());
     table.column("motion", |r| r.about.motion.clone());
@@ -69,14 +91,31 @@ pub(super) fn rows(report: &Report) -> Result<String, LabError> {
     table.column("warnings", of(|m| m.warnings.join("; ")));
     table.column("frame ms", of(|m| m.frame_ms.to_string()));
     table.column("memory MiB", of(|m| mebibytes(m.memory_bytes)));
-    table.column("worst frame", of(|m| cell(m.worst.as_ref().map(|w| w.frame))));
-    table.column("voxel recall", of(|m| number(m.voxels.as_ref().and_then(|v| v.recall))));
-    table.column("voxel precision", of(|m| number(m.voxels.as_ref().and_then(|v| v.precision))));
+    table.column(
+        "worst frame",
+        of(|m| cell(m.worst.as_ref().map(|w| w.frame))),
+    );
+    table.column(
+        "voxel recall",
+        of(|m| number(m.voxels.as_ref().and_then(|v| v.recall))),
+    );
+    table.column(
+        "voxel precision",
+        of(|m| number(m.voxels.as_ref().and_then(|v| v.precision))),
+    );
     for part in &parts(report) {
         for (title, _, value) in columns() {
-            table.column(format!("{part} {title}"), |r| number(r.part(part).and_then(&value)));
+            table.column(format!("{part} {title}"), |r| {
+                number(r.part(part).and_then(&value))
+            });
             if title == "E_t noise" {
-                let told = |r: &CaseRecord| Some(if r.part(part)?.told_apart? { "yes" } else { "no" });
+                let told = |r: &CaseRecord| {
+                    Some(if r.part(part)?.told_apart? {
+                        "yes"
+                    } else {
+                        "no"
+                    })
+                };
                 table.column(format!("{part} told apart"), |r| cell(told(r)));
             }
         }
@@ -91,8 +130,9 @@ pub(super) fn frames(report: &Report) -> Result<String, LabError> {
         .iter()
         .filter_map(|r| Some((r, r.done()?)))
         .flat_map(|(r, m)| m.parts.iter().map(move |p| (r, p)));
-    let list: Vec<(&CaseRecord, &str, &FrameScore)> =
-        parts.flat_map(|(r, (name, part))| part.frames.iter().map(move |f| (r, name.as_str(), f))).collect();
+    let list: Vec<(&CaseRecord, &str, &FrameScore)> = parts
+        .flat_map(|(r, (name, part))| part.frames.iter().map(move |f| (r, name.as_str(), f)))
+        .collect();
     let mut table = Table::new(&list);
     table.column("case", |r| r.0.about.case.clone());
     table.column("variant", |r| r.0.about.variant.clone());

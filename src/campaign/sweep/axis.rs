@@ -12,7 +12,10 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 pub(super) enum Axis {
     /// One setting, value by value.
-    List { name: Loc<String>, values: Items<RawText> },
+    List {
+        name: Loc<String>,
+        values: Items<RawText>,
+    },
     /// One number, from one end to the other.
     Range {
         name: Loc<String>,
@@ -26,7 +29,10 @@ pub(super) enum Axis {
         multiple_of: Option<Loc<f64>>,
     },
     /// Several settings at once under one name.
-    Settings { name: Loc<String>, values: Entries<Entries<RawText>> },
+    Settings {
+        name: Loc<String>,
+        values: Entries<Entries<RawText>>,
+    },
     /// Lists of one length, walked together.
     Together(Entries<Items<RawText>>),
     /// Random settings that cover each of their ranges evenly.
@@ -72,19 +78,31 @@ pub(super) struct Choice {
 
 impl Choice {
     fn one(name: &Loc<String>, at: At, text: String) -> Choice {
-        Choice::of(vec![Setting { name: Loc { value: name.value.clone(), at }, text }])
+        Choice::of(vec![Setting {
+            name: Loc {
+                value: name.value.clone(),
+                at,
+            },
+            text,
+        }])
     }
 
     /// Settings that are their own labels.
     pub(super) fn of(settings: Vec<Setting>) -> Choice {
-        Choice { labels: settings.iter().map(label).collect(), settings }
+        Choice {
+            labels: settings.iter().map(label).collect(),
+            settings,
+        }
     }
 }
 
 /// A name without its quotes.
 fn label(setting: &Setting) -> (String, String) {
     let text = setting.text.trim();
-    let bare = text.strip_prefix('"').and_then(|t| t.strip_suffix('"')).unwrap_or(text);
+    let bare = text
+        .strip_prefix('"')
+        .and_then(|t| t.strip_suffix('"'))
+        .unwrap_or(text);
     (setting.name.value.clone(), bare.to_string())
 }
 
@@ -94,11 +112,25 @@ type Wrong = (Option<At>, String);
 /// The choices of an axis, in order.
 pub(super) fn choices(axis: &Axis) -> Result<Vec<Choice>, Wrong> {
     let list: Vec<Choice> = match axis {
-        Axis::List { name, values } => values.0.iter().map(|v| Choice::one(name, v.at, v.value.0.clone())).collect(),
-        Axis::Range { name, from, to, count, scale, multiple_of } => {
+        Axis::List { name, values } => values
+            .0
+            .iter()
+            .map(|v| Choice::one(name, v.at, v.value.0.clone()))
+            .collect(),
+        Axis::Range {
+            name,
+            from,
+            to,
+            count,
+            scale,
+            multiple_of,
+        } => {
             let mut values = range(from, to, count, *scale, multiple_of.as_ref())?;
             values.dedup();
-            values.into_iter().map(|v| Choice::one(name, from.at, number(v))).collect()
+            values
+                .into_iter()
+                .map(|v| Choice::one(name, from.at, number(v)))
+                .collect()
         }
         Axis::Settings { name, values } => {
             let choice = |(label, set): &(Loc<String>, Loc<Entries<RawText>>)| Choice {
@@ -112,13 +144,20 @@ pub(super) fn choices(axis: &Axis) -> Result<Vec<Choice>, Wrong> {
             if count.value > MAX_POINTS {
                 return Err((
                     Some(count.at),
-                    format!("{} samples are more than the {MAX_POINTS} allowed", count.value),
+                    format!(
+                        "{} samples are more than the {MAX_POINTS} allowed",
+                        count.value
+                    ),
                 ));
             }
             sample(count.value, *seed, of)?
         }
     };
-    if list.is_empty() { Err((None, "this axis has no values".into())) } else { Ok(list) }
+    if list.is_empty() {
+        Err((None, "this axis has no values".into()))
+    } else {
+        Ok(list)
+    }
 }
 
 fn range(
@@ -133,16 +172,26 @@ fn range(
         return Err((Some(from.at), "the ends of a range must be finite".into()));
     }
     if scale == Scale::Log && (a <= 0.0 || b <= 0.0) {
-        return Err((Some(from.at), "the ends of a range at equal ratios must be above 0".into()));
+        return Err((
+            Some(from.at),
+            "the ends of a range at equal ratios must be above 0".into(),
+        ));
     }
     if n == 0 || n > MAX_POINTS {
-        return Err((Some(count.at), format!("a range has 1 to {MAX_POINTS} values")));
+        return Err((
+            Some(count.at),
+            format!("a range has 1 to {MAX_POINTS} values"),
+        ));
     }
     if let Some(m) = multiple_of.filter(|m| m.value.is_nan() || m.value <= 0.0) {
         return Err((Some(m.at), "multiples must be of a number above 0".into()));
     }
     let value = |i: usize| {
-        let t = if n == 1 { 0.0 } else { i as f64 / (n - 1) as f64 };
+        let t = if n == 1 {
+            0.0
+        } else {
+            i as f64 / (n - 1) as f64
+        };
         let v = match scale {
             Scale::Linear => a + (b - a) * t,
             Scale::Log => a * (b / a).powf(t),
@@ -156,12 +205,16 @@ fn together(lists: &Entries<Items<RawText>>) -> Result<Vec<Choice>, Wrong> {
     let length = lists.0.first().map_or(0, |l| l.1.value.0.len());
     if let Some((name, list)) = lists.0.iter().find(|l| l.1.value.0.len() != length) {
         let found = list.value.0.len();
-        let message =
-            format!("'{}' has {found} values and the first list {length}: they are walked together", name.value);
+        let message = format!(
+            "'{}' has {found} values and the first list {length}: they are walked together",
+            name.value
+        );
         return Err((Some(list.at), message));
     }
     let choice = |i: usize| {
-        let setting = |(name, list): &(Loc<String>, Loc<Items<RawText>>)| Setting::new(name, &list.value.0[i]);
+        let setting = |(name, list): &(Loc<String>, Loc<Items<RawText>>)| {
+            Setting::new(name, &list.value.0[i])
+        };
         Choice::of(lists.0.iter().map(setting).collect())
     };
     Ok((0..length).map(choice).collect())
@@ -176,14 +229,23 @@ fn sample(count: usize, seed: u64, of: &Entries<Distribution>) -> Result<Vec<Cho
             Distribution::Among(list) => list.0.is_empty(),
         };
         if wrong {
-            return Err((Some(distribution.at), format!("'{}': nothing can be drawn from this", name.value)));
+            return Err((
+                Some(distribution.at),
+                format!("'{}': nothing can be drawn from this", name.value),
+            ));
         }
     }
     let samples = latin_hypercube(count, of.0.len(), seed);
     let choice = |coordinates: Vec<f64>| {
         let setting = |((name, d), u): (&(Loc<String>, Loc<Distribution>), f64)| {
-            let name = Loc { value: name.value.clone(), at: d.at };
-            Setting { name, text: draw(&d.value, u) }
+            let name = Loc {
+                value: name.value.clone(),
+                at: d.at,
+            };
+            Setting {
+                name,
+                text: draw(&d.value, u),
+            }
         };
         Choice::of(of.0.iter().zip(coordinates).map(setting).collect())
     };

@@ -14,7 +14,10 @@ use std::path::Path;
 /// Most frames of one point.
 const MAX_FRAMES: usize = 100_000;
 /// Frames when nothing is said.
-const DEFAULT_FRAMES: Frames = Frames { warmup: 40, count: 20 };
+const DEFAULT_FRAMES: Frames = Frames {
+    warmup: 40,
+    count: 20,
+};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -44,16 +47,37 @@ impl Sweep {
     /// # Errors
     /// All mistakes of the file and of the experiments.
     pub fn read(path: &Path) -> Result<Sweep, Vec<Diagnostic>> {
-        let (file, mut source) =
-            Source::read::<SweepFile>(path, "give the path of a sweep, for example configs/sweeps/cones.ron")?;
-        let experiments: Vec<Experiment> = file.experiments.0.iter().filter_map(|e| source.experiment(e)).collect();
-        let beside: Vec<Experiment> = file.beside.0.iter().filter_map(|e| source.experiment(e)).collect();
+        let (file, mut source) = Source::read::<SweepFile>(
+            path,
+            "give the path of a sweep, for example configs/sweeps/cones.ron",
+        )?;
+        let experiments: Vec<Experiment> = file
+            .experiments
+            .0
+            .iter()
+            .filter_map(|e| source.experiment(e))
+            .collect();
+        let beside: Vec<Experiment> = file
+            .beside
+            .0
+            .iter()
+            .filter_map(|e| source.experiment(e))
+            .collect();
         if file.experiments.0.is_empty() {
-            let place = Place { file: path.to_path_buf(), ..Place::default() };
-            source.errors.push(Diagnostic::error(place, "`experiments` is empty: name at least one"));
+            let place = Place {
+                file: path.to_path_buf(),
+                ..Place::default()
+            };
+            source.errors.push(Diagnostic::error(
+                place,
+                "`experiments` is empty: name at least one",
+            ));
         }
         let warmup = source.frames(&file.warmup, DEFAULT_FRAMES.warmup, (0, MAX_FRAMES));
-        let frames = Frames { warmup, count: source.frames(&file.frames, DEFAULT_FRAMES.count, (1, MAX_FRAMES)) };
+        let frames = Frames {
+            warmup,
+            count: source.frames(&file.frames, DEFAULT_FRAMES.count, (1, MAX_FRAMES)),
+        };
         let (axes, mut names) = axes(&file.axes, experiments.len(), &mut source);
         if !source.errors.is_empty() {
             return Err(source.errors);
@@ -65,13 +89,33 @@ impl Sweep {
         if bounces.is_empty() {
             bounces.push(ALL_BOUNCES);
         }
-        let (name, text, folder, fixed) = (source.name(), source.text(), source.folder(), settings(&file.set));
-        Ok(Sweep { name, text, experiments, beside, names, frames, bounces, fixed, axes, folder })
+        let (name, text, folder, fixed) = (
+            source.name(),
+            source.text(),
+            source.folder(),
+            settings(&file.set),
+        );
+        Ok(Sweep {
+            name,
+            text,
+            experiments,
+            beside,
+            names,
+            frames,
+            bounces,
+            fixed,
+            axes,
+            folder,
+        })
     }
 }
 
 /// The choices of all axes, and the names of what they vary.
-fn axes(list: &Items<Axis>, experiments: usize, source: &mut Source) -> (Vec<Vec<Choice>>, Vec<String>) {
+fn axes(
+    list: &Items<Axis>,
+    experiments: usize,
+    source: &mut Source,
+) -> (Vec<Vec<Choice>>, Vec<String>) {
     let (mut axes, mut names): (Vec<Vec<Choice>>, Vec<String>) = (Vec::new(), Vec::new());
     let mut points = experiments;
     for axis in &list.0 {
@@ -89,7 +133,9 @@ fn axes(list: &Items<Axis>, experiments: usize, source: &mut Source) -> (Vec<Vec
             Err((at, message)) => source.wrong(at.unwrap_or(axis.at), message),
         }
         if points > MAX_POINTS {
-            let message = format!("with this axis there are {points} points, more than the {MAX_POINTS} allowed");
+            let message = format!(
+                "with this axis there are {points} points, more than the {MAX_POINTS} allowed"
+            );
             source.wrong(axis.at, message);
             break;
         }

@@ -18,12 +18,32 @@ const MOST_MISTAKES: usize = 20;
 /// A point whose model is not on this machine, or cannot be read. Where it can, the point has another number, by the scene's
 /// content.
 fn absent(experiment: Experiment, labels: Labels, why: &SceneError) -> SweepPoint {
-    let name = Path::new(&experiment.scene).file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned());
+    let name = Path::new(&experiment.scene)
+        .file_stem()
+        .map_or(String::new(), |s| s.to_string_lossy().into_owned());
     let (size, time) = (experiment.size, format!("{:?}", experiment.time));
-    let subject = Subject { scene: name, sha256: String::new(), camera: String::new(), size, time };
+    let subject = Subject {
+        scene: name,
+        sha256: String::new(),
+        camera: String::new(),
+        size,
+        time,
+    };
     let values = labels.iter().map(|(name, value)| format!("{name}={value}"));
-    let id = content_id(["absent".to_string(), format!("{subject:?}")].into_iter().chain(values), DIGITS);
-    SweepPoint { id, experiment, scene: Arc::default(), absent: Some(why.to_string()), subject, labels }
+    let id = content_id(
+        ["absent".to_string(), format!("{subject:?}")]
+            .into_iter()
+            .chain(values),
+        DIGITS,
+    );
+    SweepPoint {
+        id,
+        experiment,
+        scene: Arc::default(),
+        absent: Some(why.to_string()),
+        subject,
+        labels,
+    }
 }
 
 /// All points of a sweep in order, without those that another one equals; and how many those are. A model that is not
@@ -31,19 +51,28 @@ fn absent(experiment: Experiment, labels: Labels, why: &SceneError) -> SweepPoin
 ///
 /// # Errors
 /// Everything that is wrong with the sweep's settings: nothing is measured then.
-pub fn list(runner: &mut Runner, sweep: &Sweep, frames: Frames) -> Result<(Vec<SweepPoint>, usize), LabError> {
+pub fn list(
+    runner: &mut Runner,
+    sweep: &Sweep,
+    frames: Frames,
+) -> Result<(Vec<SweepPoint>, usize), LabError> {
     let mut points: Vec<SweepPoint> = Vec::new();
     let mut known = HashSet::new();
     let mut mistakes = Mistakes::default();
     for index in 0..sweep.len() {
-        let point = sweep.point(index).map_err(LabError::Input).and_then(|(experiment, labels)| {
-            match runner.point(experiment.clone(), labels.clone(), frames) {
-                Err(LabError::Scene(
-                    why @ (SceneError::NoModel { .. } | SceneError::Model { .. } | SceneError::SceneFile { .. }),
-                )) => Ok(absent(experiment, labels, &why)),
-                other => other,
-            }
-        });
+        let point = sweep
+            .point(index)
+            .map_err(LabError::Input)
+            .and_then(|(experiment, labels)| {
+                match runner.point(experiment.clone(), labels.clone(), frames) {
+                    Err(LabError::Scene(
+                        why @ (SceneError::NoModel { .. }
+                        | SceneError::Model { .. }
+                        | SceneError::SceneFile { .. }),
+                    )) => Ok(absent(experiment, labels, &why)),
+                    other => other,
+                }
+            });
         points.extend(mistakes.take(point)?.filter(|p| known.insert(p.id.clone())));
         if mistakes.count() >= MOST_MISTAKES {
             break;

@@ -48,29 +48,64 @@ impl Sweep {
     ///
     /// # Errors
     /// A setting without values; more than [`MAX_POINTS`] combinations.
-    pub fn of(mut experiments: Vec<Experiment>, axes: &[Axis], frames: Frames) -> Result<Sweep, LabError> {
+    pub fn of(
+        mut experiments: Vec<Experiment>,
+        axes: &[Axis],
+        frames: Frames,
+    ) -> Result<Sweep, LabError> {
         if let Some((name, _)) = axes.iter().find(|a| a.1.is_empty()) {
             return Err(LabError::Request(format!("'{name}' has no values")));
         }
         // Messages about values point at the line of their setting.
         let joined: Vec<String> = axes.iter().map(|(_, values)| values.join(",")).collect();
-        let (text, settings) = lines(axes.iter().zip(&joined).map(|(a, list)| (a.0.as_str(), list.as_str())), "=");
+        let (text, settings) = lines(
+            axes.iter()
+                .zip(&joined)
+                .map(|(a, list)| (a.0.as_str(), list.as_str())),
+            "=",
+        );
         for experiment in &mut experiments {
             experiment.sources.add("--axis".as_ref(), text.clone());
         }
-        let choice = |s: &Setting, value: &String| Choice::of(vec![Setting { text: value.clone(), ..s.clone() }]);
+        let choice = |s: &Setting, value: &String| {
+            Choice::of(vec![Setting {
+                text: value.clone(),
+                ..s.clone()
+            }])
+        };
         let axis = |(s, a): (&Setting, &Axis)| a.1.iter().map(|v| choice(s, v)).collect();
         let list: Vec<Vec<Choice>> = settings.iter().zip(axes).map(axis).collect();
-        let points = list.iter().fold(experiments.len(), |n, l| n.saturating_mul(l.len()));
+        let points = list
+            .iter()
+            .fold(experiments.len(), |n, l| n.saturating_mul(l.len()));
         if points > MAX_POINTS {
-            return Err(LabError::Request(format!("{points} combinations are more than the {MAX_POINTS} allowed")));
+            return Err(LabError::Request(format!(
+                "{points} combinations are more than the {MAX_POINTS} allowed"
+            )));
         }
         let names = axes.iter().map(|a| a.0.clone());
-        let names = (experiments.len() > 1).then(|| "experiment".to_string()).into_iter().chain(names).collect();
-        let name = experiments.first().map_or(String::new(), |e| e.name.clone());
+        let names = (experiments.len() > 1)
+            .then(|| "experiment".to_string())
+            .into_iter()
+            .chain(names)
+            .collect();
+        let name = experiments
+            .first()
+            .map_or(String::new(), |e| e.name.clone());
         let bounces = vec![ALL_BOUNCES];
         let (beside, fixed, folder) = (Vec::new(), Vec::new(), PathBuf::from("."));
-        Ok(Sweep { name, text, experiments, beside, names, frames, bounces, fixed, axes: list, folder })
+        Ok(Sweep {
+            name,
+            text,
+            experiments,
+            beside,
+            names,
+            frames,
+            bounces,
+            fixed,
+            axes: list,
+            folder,
+        })
     }
 
     /// A sweep without a file: in every scene an experiment as it is, then with each of some settings alone, name and RON.
@@ -81,12 +116,32 @@ impl Sweep {
         frames: Frames,
         bounces: u32,
     ) -> Sweep {
-        let (text, settings) = lines(settings.iter().map(|(name, value)| (name.as_str(), value.as_str())), "=");
-        experiment.sources.add("the settings in turn".as_ref(), text.clone());
-        let choice = |name: &str, label: String, settings| Choice { labels: vec![(name.into(), label)], settings };
+        let (text, settings) = lines(
+            settings
+                .iter()
+                .map(|(name, value)| (name.as_str(), value.as_str())),
+            "=",
+        );
+        experiment
+            .sources
+            .add("the settings in turn".as_ref(), text.clone());
+        let choice = |name: &str, label: String, settings| Choice {
+            labels: vec![(name.into(), label)],
+            settings,
+        };
         let mut set = vec![choice(SET, NOTHING.into(), Vec::new())];
-        set.extend(settings.into_iter().map(|s| choice(SET, format!("{}={}", s.name.value, s.text), vec![s])));
-        let scene = |name: &String| choice(SCENE, name.clone(), lines([(SCENE, format!("{name:?}").as_str())], "=").1);
+        set.extend(
+            settings
+                .into_iter()
+                .map(|s| choice(SET, format!("{}={}", s.name.value, s.text), vec![s])),
+        );
+        let scene = |name: &String| {
+            choice(
+                SCENE,
+                name.clone(),
+                lines([(SCENE, format!("{name:?}").as_str())], "=").1,
+            )
+        };
         Sweep {
             name: experiment.name.clone(),
             text,
@@ -103,7 +158,8 @@ impl Sweep {
 
     /// How many points there are.
     pub fn len(&self) -> usize {
-        self.beside.len() + self.axes.iter().map(Vec::len).product::<usize>() * self.experiments.len()
+        self.beside.len()
+            + self.axes.iter().map(Vec::len).product::<usize>() * self.experiments.len()
     }
 
     /// Whether there is nothing to measure.
@@ -125,7 +181,10 @@ impl Sweep {
                     rest /= axis.len();
                 }
                 chosen.reverse();
-                (self.experiments[rest % self.experiments.len()].clone(), chosen)
+                (
+                    self.experiments[rest % self.experiments.len()].clone(),
+                    chosen,
+                )
             }
         };
         let mut labels = Vec::new();
@@ -133,8 +192,15 @@ impl Sweep {
             labels.push(("experiment".to_string(), experiment.name.clone()));
         }
         labels.extend(chosen.iter().flat_map(|c| c.labels.clone()));
-        let settings = self.fixed.iter().chain(chosen.iter().flat_map(|c| &c.settings));
+        let settings = self
+            .fixed
+            .iter()
+            .chain(chosen.iter().flat_map(|c| &c.settings));
         let errors = apply(&mut experiment, settings, &self.folder);
-        if errors.is_empty() { Ok((experiment, labels)) } else { Err(errors) }
+        if errors.is_empty() {
+            Ok((experiment, labels))
+        } else {
+            Err(errors)
+        }
     }
 }

@@ -61,7 +61,12 @@ pub type PointRecord = Record<About, Point>;
 
 /// The records of a sweep's folder.
 pub fn points_in(path: &Path) -> Folder {
-    Folder { path: path.into(), kind: "points", schema: POINT_SCHEMA, most: MAX_FILE }
+    Folder {
+        path: path.into(),
+        kind: "points",
+        schema: POINT_SCHEMA,
+        most: MAX_FILE,
+    }
 }
 
 /// A picture's path in the folder: of kind `pictures` or `errors` by the number of a point.
@@ -77,14 +82,30 @@ pub(super) fn reference(subject: &Subject) -> String {
 impl ManifestPoint {
     /// The entry of a point.
     pub fn of(point: &SweepPoint) -> ManifestPoint {
-        ManifestPoint { id: point.id.clone(), labels: point.labels.iter().cloned().collect() }
+        ManifestPoint {
+            id: point.id.clone(),
+            labels: point.labels.iter().cloned().collect(),
+        }
     }
 }
 
 impl Manifest {
     /// A list of points.
-    pub fn new(name: String, text: String, names: Vec<String>, frames: Frames, points: Vec<ManifestPoint>) -> Manifest {
-        Manifest { schema: MANIFEST_SCHEMA.into(), name, text, names, frames, points }
+    pub fn new(
+        name: String,
+        text: String,
+        names: Vec<String>,
+        frames: Frames,
+        points: Vec<ManifestPoint>,
+    ) -> Manifest {
+        Manifest {
+            schema: MANIFEST_SCHEMA.into(),
+            name,
+            text,
+            names,
+            frames,
+            points,
+        }
     }
 
     fn file(folder: &Path) -> PathBuf {
@@ -105,9 +126,14 @@ impl Manifest {
         let manifest: Manifest = read_json(&file, MAX_MANIFEST)
             .map_err(|e| wrong(format!("{e}; give the folder that `conelab sweep` wrote")))?;
         if manifest.schema != MANIFEST_SCHEMA {
-            return Err(wrong(format!("its schema is '{}', this program reads '{MANIFEST_SCHEMA}'", manifest.schema)));
+            return Err(wrong(format!(
+                "its schema is '{}', this program reads '{MANIFEST_SCHEMA}'",
+                manifest.schema
+            )));
         }
-        let fits = |p: &&ManifestPoint| p.id.len() == DIGITS && p.id.bytes().all(|b| b.is_ascii_hexdigit());
+        let fits = |p: &&ManifestPoint| {
+            p.id.len() == DIGITS && p.id.bytes().all(|b| b.is_ascii_hexdigit())
+        };
         match manifest.points.iter().find(|p| !fits(p)) {
             Some(bad) => Err(wrong(format!("'{}' is no number of a point", bad.id))),
             None => Ok(manifest),
@@ -136,7 +162,14 @@ impl Collected {
 
     /// The reference that a point was scored against, displayed: JPEG.
     pub fn reference(&self, record: &PointRecord) -> Option<Vec<u8>> {
-        read_input(&self.folders.get(&record.id)?.join(reference(&record.about.subject)), MAX_FILE).ok()
+        read_input(
+            &self
+                .folders
+                .get(&record.id)?
+                .join(reference(&record.about.subject)),
+            MAX_FILE,
+        )
+        .ok()
     }
 }
 
@@ -163,7 +196,10 @@ pub fn collect(folders: &[PathBuf]) -> Result<Collected, LabError> {
             if have.as_ref().is_some_and(|r| r.done().is_some()) {
                 continue;
             }
-            if let Some(record) = folder.read(&id).filter(|r: &PointRecord| have.is_none() || r.done().is_some()) {
+            if let Some(record) = folder
+                .read(&id)
+                .filter(|r: &PointRecord| have.is_none() || r.done().is_some())
+            {
                 out.folders.insert(id, path.clone());
                 out.points[i].1 = Some(record);
             }

@@ -2,7 +2,9 @@
 
 use super::list::list;
 use super::points::Sweep;
-use super::record::{About, Manifest, ManifestPoint, PointRecord, collect, jpeg, points_in, reference};
+use super::record::{
+    About, Manifest, ManifestPoint, PointRecord, collect, jpeg, points_in, reference,
+};
 use crate::campaign::points::{OpenScene, SweepPoint, labelled};
 use crate::campaign::record::{File, Folder, write_file};
 use crate::campaign::runner::{Counts, Job, Open, Progress, Runner, Taken};
@@ -52,7 +54,11 @@ impl Job for SweepPoint {
     }
 
     fn title(&self) -> String {
-        format!("{} ({})", self.id, labelled(self.labels.iter().map(|(name, value)| (name, value))))
+        format!(
+            "{} ({})",
+            self.id,
+            labelled(self.labels.iter().map(|(name, value)| (name, value)))
+        )
     }
 
     fn about(&self, runner: &mut Runner, folder: &Folder) -> Result<About, LabError> {
@@ -60,12 +66,25 @@ impl Job for SweepPoint {
             // Camera and light are not known.
             Some(_) => String::new(),
             None => {
-                let params = &runner.warm.graph(&runner.lab.home, &self.experiment.graph)?.graph.params;
+                let params = &runner
+                    .warm
+                    .graph(&runner.lab.home, &self.experiment.graph)?
+                    .graph
+                    .params;
                 let camera = camera_of(&self.experiment, &self.scene)?;
-                resolved_text(&self.experiment, params, &camera, &self.scene, &folder.path.join("experiment.ron"))?
+                resolved_text(
+                    &self.experiment,
+                    params,
+                    &camera,
+                    &self.scene,
+                    &folder.path.join("experiment.ron"),
+                )?
             }
         };
-        Ok(About { experiment, subject: self.subject.clone() })
+        Ok(About {
+            experiment,
+            subject: self.subject.clone(),
+        })
     }
 
     fn warnings(point: &Point) -> &[String] {
@@ -88,7 +107,9 @@ pub fn run(
     let mut runner = Runner::open(open, open_scene, on_progress)?;
     let (points, equal) = list(&mut runner, sweep, options.frames)?;
     if equal > 0 {
-        runner.tell(Progress::Note(format!("{equal} combinations equal another one and are measured once")));
+        runner.tell(Progress::Note(format!(
+            "{equal} combinations equal another one and are measured once"
+        )));
     }
     let folder = points_in(&options.folder);
     folder.clean(&["points", "pictures", "errors", "references"]);
@@ -97,13 +118,23 @@ pub fn run(
     Manifest::new(name, text, names, options.frames, listed).write(&options.folder)?;
     let Shard { number, of } = options.shard;
     let mine: Vec<&SweepPoint> = points.iter().skip(number - 1).step_by(of).collect();
-    let Options { frames, samples, .. } = *options;
-    let measuring = Measuring { frames, bounces: &sweep.bounces, samples, scored: Scored::All };
+    let Options {
+        frames, samples, ..
+    } = *options;
+    let measuring = Measuring {
+        frames,
+        bounces: &sweep.bounces,
+        samples,
+        scored: Scored::All,
+    };
     let mut elsewhere = 0;
     let mut kept = |runner: &mut Runner, point: &SweepPoint| {
-        let record = measuring.kept(runner, &folder, point)?.filter(|r| r.done().is_some() || !options.again);
+        let record = measuring
+            .kept(runner, &folder, point)?
+            .filter(|r| r.done().is_some() || !options.again);
         let measured = record.as_ref().filter(|r| r.done().is_some());
-        elsewhere += usize::from(measured.is_some_and(|r| r.device.name != runner.lab.gpu.info.name));
+        elsewhere +=
+            usize::from(measured.is_some_and(|r| r.device.name != runner.lab.gpu.info.name));
         Ok(record)
     };
     let mut measured = |runner: &mut Runner, point: &SweepPoint| measuring.measured(runner, point);
@@ -155,7 +186,10 @@ impl Measuring<'_> {
             Err(error) if record.as_ref().is_some_and(|r| r.done().is_some()) => return Err(error),
             Err(_) => Vec::new(),
         };
-        let samples: BTreeMap<u32, u64> = known.iter().map(|(bounces, r)| (*bounces, r.samples)).collect();
+        let samples: BTreeMap<u32, u64> = known
+            .iter()
+            .map(|(bounces, r)| (*bounces, r.samples))
+            .collect();
         // A reference that has come or grown since makes other scores.
         Ok(record.filter(|r| r.done().is_none_or(|found| found.references == samples)))
     }
@@ -170,13 +204,24 @@ impl Measuring<'_> {
         }
         let known = self.references(runner, point)?;
         let Runner { lab, warm, .. } = runner;
-        let found = measure(lab, warm, &point.experiment, &point.scene, self.frames, &known, self.scored)?;
+        let found = measure(
+            lab,
+            warm,
+            &point.experiment,
+            &point.scene,
+            self.frames,
+            &known,
+            self.scored,
+        )?;
         let files: [(String, Option<Vec<u8>>); 3] = [
             (jpeg("pictures", &point.id), found.picture),
             (jpeg("errors", &point.id), found.error_map),
             (reference(&point.subject), found.reference),
         ];
-        let files: Vec<File> = files.into_iter().filter_map(|(name, bytes)| Some((name, bytes?))).collect();
+        let files: Vec<File> = files
+            .into_iter()
+            .filter_map(|(name, bytes)| Some((name, bytes?)))
+            .collect();
         Ok((found.point, files))
     }
 
@@ -184,11 +229,24 @@ impl Measuring<'_> {
     ///
     /// # Errors
     /// One that cannot be gathered or read.
-    pub fn references(&self, runner: &mut Runner, point: &SweepPoint) -> Result<Vec<(u32, Arc<Reference>)>, LabError> {
+    pub fn references(
+        &self,
+        runner: &mut Runner,
+        point: &SweepPoint,
+    ) -> Result<Vec<(u32, Arc<Reference>)>, LabError> {
         let mut list = Vec::new();
         for bounces in self.bounces.iter().filter(|_| point.absent.is_none()) {
-            let wanted = Wanted { bounces: *bounces, samples: self.samples, seed: None };
-            let found = runner.reference(&point.experiment, &point.scene, &format!("{:?}", point.subject), wanted)?;
+            let wanted = Wanted {
+                bounces: *bounces,
+                samples: self.samples,
+                seed: None,
+            };
+            let found = runner.reference(
+                &point.experiment,
+                &point.scene,
+                &format!("{:?}", point.subject),
+                wanted,
+            )?;
             list.extend(found.map(|r| (*bounces, r)));
         }
         Ok(list)

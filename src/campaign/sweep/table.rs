@@ -10,7 +10,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Scores of a point, by part and metric.
 pub fn parts_of(point: &Point) -> BTreeMap<String, BTreeMap<String, f64>> {
-    point.scores.iter().map(|(part, scores)| (part.clone(), scores.numbers())).collect()
+    point
+        .scores
+        .iter()
+        .map(|(part, scores)| (part.clone(), scores.numbers()))
+        .collect()
 }
 
 /// A line of the table.
@@ -32,25 +36,42 @@ impl Row<'_> {
 /// # Errors
 /// Writing to memory gives none, whatever the sweep.
 pub fn csv(collected: &Collected) -> Result<String, LabError> {
-    let parts = |r: &Option<PointRecord>| r.as_ref().and_then(|r| r.done()).map(parts_of).unwrap_or_default();
+    let parts = |r: &Option<PointRecord>| {
+        r.as_ref()
+            .and_then(|r| r.done())
+            .map(parts_of)
+            .unwrap_or_default()
+    };
     let points = collected.points.iter();
-    let rows: Vec<Row> =
-        points.map(|(planned, record)| Row { planned, record: record.as_ref(), parts: parts(record) }).collect();
+    let rows: Vec<Row> = points
+        .map(|(planned, record)| Row {
+            planned,
+            record: record.as_ref(),
+            parts: parts(record),
+        })
+        .collect();
     let points = rows.iter().filter_map(Row::point);
-    let passes: IndexSet<&str> = points.flat_map(|p| &p.stats.passes).map(|p| p.name.as_str()).collect();
+    let passes: IndexSet<&str> = points
+        .flat_map(|p| &p.stats.passes)
+        .map(|p| p.name.as_str())
+        .collect();
     let parts = rows.iter().flat_map(|r| &r.parts);
-    let scores: BTreeSet<(&str, &str)> =
-        parts.flat_map(|(part, m)| m.keys().map(|m| (part.as_str(), m.as_str()))).collect();
+    let scores: BTreeSet<(&str, &str)> = parts
+        .flat_map(|(part, m)| m.keys().map(|m| (part.as_str(), m.as_str())))
+        .collect();
     let mut table = Table::new(&rows);
     table.column("id", |r| r.planned.id.clone());
     table.column("outcome", |r| {
         let done = r.record.map(|r| r.done().is_some());
-        done.map_or("left", |done| if done { "done" } else { "failed" }).into()
+        done.map_or("left", |done| if done { "done" } else { "failed" })
+            .into()
     });
     for name in &collected.names {
         table.column(name, |r| cell(r.planned.labels.get(name)));
     }
-    let of = |value: fn(&Stats) -> String| move |r: &Row| r.point().map(|p| value(&p.stats)).unwrap_or_default();
+    let of = |value: fn(&Stats) -> String| {
+        move |r: &Row| r.point().map(|p| value(&p.stats)).unwrap_or_default()
+    };
     table.column("graph", of(|s| s.graph.clone()));
     table.column("scene", of(|s| s.scene.clone()));
     table.column("width", of(|s| s.size[0].to_string()));
@@ -61,18 +82,25 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
     table.column("warnings", of(|s| s.warnings.join("; ")));
     table.column("reference samples", |r| {
         let samples = r.point().into_iter().flat_map(|p| &p.references);
-        samples.map(|(bounces, n)| format!("{bounces} bounces: {n}")).collect::<Vec<_>>().join("; ")
+        samples
+            .map(|(bounces, n)| format!("{bounces} bounces: {n}"))
+            .collect::<Vec<_>>()
+            .join("; ")
     });
     table.column("error", |r| cell(r.record.and_then(|r| r.error())));
     table.column("total median ms", of(|s| s.total_gpu_ms.median.to_string()));
     table.column("total p95 ms", of(|s| s.total_gpu_ms.p95.to_string()));
     table.column("total min ms", of(|s| s.total_gpu_ms.min.to_string()));
     for (part, metric) in scores {
-        table.column(format!("{part} {metric}"), |r| cell(r.parts.get(part).and_then(|p| p.get(metric))));
+        table.column(format!("{part} {metric}"), |r| {
+            cell(r.parts.get(part).and_then(|p| p.get(metric)))
+        });
     }
     for name in passes {
         table.column(format!("{name} ms"), |r| {
-            let pass = r.point().and_then(|p| p.stats.passes.iter().find(|p| p.name == name));
+            let pass = r
+                .point()
+                .and_then(|p| p.stats.passes.iter().find(|p| p.name == name));
             cell(pass.map(|p| p.gpu_ms.median))
         });
     }

@@ -44,15 +44,25 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
     let home = Workspace::find()?;
     let loaded = home.load_of(&experiment).map_err(LabError::Input)?;
     if loaded.graph.ablation.is_empty() {
-        let message = format!("graph '{}' has no `ablation`: steps from an ideal to the method", loaded.graph.name);
+        let message = format!(
+            "graph '{}' has no `ablation`: steps from an ideal to the method",
+            loaded.graph.name
+        );
         return Err(LabError::Request(message));
     }
     let scene = Arc::new(adapt::open_scene(&experiment)?);
     let lab = Lab::open(home, args.device.options())?;
-    let reference = reference::with_bar(&lab, &experiment, &scene, args.bounces, Goal::Samples(args.spp))?;
+    let reference = reference::with_bar(
+        &lab,
+        &experiment,
+        &scene,
+        args.bounces,
+        Goal::Samples(args.spp),
+    )?;
 
     let names = parts_of(&loaded.graph);
-    let (mut steps, mut before): (Vec<Step>, BTreeMap<String, Linear>) = (Vec::new(), BTreeMap::new());
+    let (mut steps, mut before): (Vec<Step>, BTreeMap<String, Linear>) =
+        (Vec::new(), BTreeMap::new());
     for step in loaded.graph.ablation.iter().map(|s| &s.value) {
         let mut set = experiment.clone();
         for (name, value) in &step.set.0 {
@@ -64,18 +74,34 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
         let parts = session.parts()?;
         if let Some(folder) = &args.pictures {
             for (part, light) in &parts {
-                crate::results::picture::write_linear(&folder.join(format!("{}-{part}.exr", step.title)), light)?;
+                crate::results::picture::write_linear(
+                    &folder.join(format!("{}-{part}.exr", step.title)),
+                    light,
+                )?;
             }
         }
         let mut errors = BTreeMap::new();
         for (part, light) in &parts {
-            let Some(expected) = reference.parts.get(part) else { continue };
-            let fail = |e: crate::metrics::MetricError| LabError::Request(format!("part '{part}': {e}"));
-            let adds =
-                relative_distance(light, before.get(part).unwrap_or(&expected.mean), &expected.mean).map_err(fail)?;
-            errors.insert(part.clone(), [relmse(light, &expected.mean).map_err(fail)?, adds]);
+            let Some(expected) = reference.parts.get(part) else {
+                continue;
+            };
+            let fail =
+                |e: crate::metrics::MetricError| LabError::Request(format!("part '{part}': {e}"));
+            let adds = relative_distance(
+                light,
+                before.get(part).unwrap_or(&expected.mean),
+                &expected.mean,
+            )
+            .map_err(fail)?;
+            errors.insert(
+                part.clone(),
+                [relmse(light, &expected.mean).map_err(fail)?, adds],
+            );
         }
-        steps.push(Step { title: step.title.clone(), parts: errors });
+        steps.push(Step {
+            title: step.title.clone(),
+            parts: errors,
+        });
         before = parts;
     }
     print(&reference, &steps);
@@ -87,7 +113,11 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
             scene: scene.name.clone(),
             device: lab.gpu.info.name.clone(),
             reference_samples: reference.samples,
-            noise: reference.parts.iter().map(|(n, p)| (n.clone(), p.noise.relmse)).collect(),
+            noise: reference
+                .parts
+                .iter()
+                .map(|(n, p)| (n.clone(), p.noise.relmse))
+                .collect(),
             steps,
         };
         write_json(path, &ablation)?;
@@ -96,7 +126,10 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
 }
 
 fn print(reference: &Reference, steps: &[Step]) {
-    say!("relMSE against {} samples a pixel; in brackets what the step adds to the one before", reference.samples);
+    say!(
+        "relMSE against {} samples a pixel; in brackets what the step adds to the one before",
+        reference.samples
+    );
     let mut line = format!("{:<12}", "part");
     for step in steps {
         line += &format!("{:>24}", step.title);

@@ -25,8 +25,19 @@ pub(super) struct Sources<'a> {
 }
 
 impl<'a> Sources<'a> {
-    pub(super) fn new(changes: &'a Changes, device: &'a DeviceArgs, frames: Option<usize>) -> Sources<'a> {
-        Sources { changes, device, frames, lab: None, scenes: BTreeMap::new(), rendered: Vec::new() }
+    pub(super) fn new(
+        changes: &'a Changes,
+        device: &'a DeviceArgs,
+        frames: Option<usize>,
+    ) -> Sources<'a> {
+        Sources {
+            changes,
+            device,
+            frames,
+            lab: None,
+            scenes: BTreeMap::new(),
+            rendered: Vec::new(),
+        }
     }
 
     /// A picture by its path. `set` says whether `--set` is for it: a reference has other parameters.
@@ -34,20 +45,38 @@ impl<'a> Sources<'a> {
         let name = shown(path).display().to_string();
         if path.is_dir() {
             let parts = capture::parts(path, &Manifest::read(path)?)?;
-            return Ok(Side { name, parts, noise: BTreeMap::new() });
+            return Ok(Side {
+                name,
+                parts,
+                noise: BTreeMap::new(),
+            });
         }
         if path.extension().is_some_and(|e| e == "ron") {
             let parts = self.render(path, set)?;
-            return Ok(Side { name, parts, noise: BTreeMap::new() });
+            return Ok(Side {
+                name,
+                parts,
+                noise: BTreeMap::new(),
+            });
         }
         let parts = BTreeMap::from([("total".into(), picture::read_linear(path)?)]);
-        Ok(Side { name, parts, noise: BTreeMap::new() })
+        Ok(Side {
+            name,
+            parts,
+            noise: BTreeMap::new(),
+        })
     }
 
     /// The cached reference of the first experiment, if there are both.
     pub(super) fn cached(&self, bounces: u32) -> Result<Option<Side>, LabError> {
-        let Some((experiment, scene)) = self.rendered.first() else { return Ok(None) };
-        if let Some((other, _)) = self.rendered.iter().find(|(other, _)| !same_view(experiment, other)) {
+        let Some((experiment, scene)) = self.rendered.first() else {
+            return Ok(None);
+        };
+        if let Some((other, _)) = self
+            .rendered
+            .iter()
+            .find(|(other, _)| !same_view(experiment, other))
+        {
             warn!(
                 "warning: '{}' and '{}' differ in scene, camera, time or light, and are compared all the same",
                 experiment.name, other.name
@@ -55,9 +84,20 @@ impl<'a> Sources<'a> {
         }
         let found = reference::find(&Workspace::find()?, experiment, scene, bounces)?;
         Ok(found.map(|r| Side {
-            name: format!("path traced, {} samples a pixel, bounces {bounces}", r.samples),
-            noise: r.parts.iter().map(|(part, p)| (part.clone(), p.noise)).collect(),
-            parts: r.parts.into_iter().map(|(part, p)| (part, p.mean)).collect(),
+            name: format!(
+                "path traced, {} samples a pixel, bounces {bounces}",
+                r.samples
+            ),
+            noise: r
+                .parts
+                .iter()
+                .map(|(part, p)| (part.clone(), p.noise))
+                .collect(),
+            parts: r
+                .parts
+                .into_iter()
+                .map(|(part, p)| (part, p.mean))
+                .collect(),
         }))
     }
 
@@ -66,7 +106,11 @@ impl<'a> Sources<'a> {
         self.lab.as_ref().map_or(Ok(()), validated)
     }
 
-    fn render(&mut self, path: &Path, set: bool) -> Result<BTreeMap<String, crate::metrics::Linear>, LabError> {
+    fn render(
+        &mut self,
+        path: &Path,
+        set: bool,
+    ) -> Result<BTreeMap<String, crate::metrics::Linear>, LabError> {
         let mut changes = self.changes.clone();
         if !set {
             changes.set.clear();
@@ -86,8 +130,10 @@ impl<'a> Sources<'a> {
         let (mut session, warnings) = lab.prepare(&experiment, scene.clone(), |graph| {
             let parts = parts_of(graph);
             if parts.is_empty() {
-                let message =
-                    format!("graph '{}' has neither `parts` nor `hdr`: there is nothing to compare", graph.name);
+                let message = format!(
+                    "graph '{}' has neither `parts` nor `hdr`: there is nothing to compare",
+                    graph.name
+                );
                 return Err(LabError::Request(message));
             }
             Ok(parts.into_iter().map(|p| p.texture).collect())
@@ -106,7 +152,14 @@ impl<'a> Sources<'a> {
 
 /// Whether two experiments look at the same: only then can one reference be for both.
 fn same_view(a: &Experiment, b: &Experiment) -> bool {
-    let lights = |e: &Experiment| e.lights.iter().map(|(name, l)| (name.value.clone(), *l)).collect::<Vec<_>>();
-    let mut seen = FIELDS.iter().filter(|f| !["graph", "size"].contains(&f.name));
+    let lights = |e: &Experiment| {
+        e.lights
+            .iter()
+            .map(|(name, l)| (name.value.clone(), *l))
+            .collect::<Vec<_>>()
+    };
+    let mut seen = FIELDS
+        .iter()
+        .filter(|f| !["graph", "size"].contains(&f.name));
     seen.all(|f| (f.same)(a, b)) && lights(a) == lights(b)
 }

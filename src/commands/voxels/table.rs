@@ -5,7 +5,12 @@ use crate::measure::oracle::SHAPES;
 
 pub(super) fn print(report: &Report) {
     let [x, y, z] = report.size;
-    say!("{}: {} triangles in {x} x {y} x {z} cells, on {}", report.scene, report.triangles, report.device);
+    say!(
+        "{}: {} triangles in {x} x {y} x {z} cells, on {}",
+        report.scene,
+        report.triangles,
+        report.device
+    );
     if let Some(score) = report.modes.iter().find_map(|m| m.score.as_ref()) {
         say!(
             "exact: {} cells, {} in the thin set, {} borderline; {} cells enclosed{}",
@@ -13,7 +18,11 @@ pub(super) fn print(report: &Report) {
             score.thin,
             score.borderline,
             score.enclosed,
-            if score.enclosed == 0 { " (nothing closed: leaks say nothing)" } else { "" }
+            if score.enclosed == 0 {
+                " (nothing closed: leaks say nothing)"
+            } else {
+                ""
+            }
         );
     }
     say!(
@@ -36,7 +45,13 @@ pub(super) fn print(report: &Report) {
     for mode in &report.modes {
         match (&mode.score, &mode.skipped) {
             (Some(s), _) => {
-                let leak = |n: u64| if s.enclosed == 0 { "-".to_string() } else { n.to_string() };
+                let leak = |n: u64| {
+                    if s.enclosed == 0 {
+                        "-".to_string()
+                    } else {
+                        n.to_string()
+                    }
+                };
                 say!(
                     "{:<20}{:>9}{:>9}{:>10}{:>9}{:>8}{:>9}{:>9}{:>9}{:>9.4}{:>8.3}{:>10.2}{:>+9.3}",
                     mode.title,
@@ -54,7 +69,11 @@ pub(super) fn print(report: &Report) {
                     s.opacity_bias
                 );
             }
-            (None, why) => say!("{:<20}skipped: {}", mode.title, why.as_deref().unwrap_or("no reason")),
+            (None, why) => say!(
+                "{:<20}skipped: {}",
+                mode.title,
+                why.as_deref().unwrap_or("no reason")
+            ),
         }
         for warning in &mode.warnings {
             say!("  warning: {warning}");
@@ -65,8 +84,13 @@ pub(super) fn print(report: &Report) {
 
 /// Recall / precision by class.
 fn shapes(report: &Report) {
-    let there =
-        |name: &&&str| report.modes.iter().filter_map(|m| m.score.as_ref()).any(|s| s.shapes.contains_key(**name));
+    let there = |name: &&&str| {
+        report
+            .modes
+            .iter()
+            .filter_map(|m| m.score.as_ref())
+            .any(|s| s.shapes.contains_key(**name))
+    };
     let classes: Vec<&&str> = SHAPES.iter().filter(there).collect();
     let mut line = format!("\n{:<20}", "recall / precision");
     for class in &classes {

@@ -25,7 +25,9 @@ impl<'de> Deserialize<'de> for PassItem {
         // What is no struct at all is told as a pass that it is not.
         let probe = crate::diagnostics::options().from_str::<Probe>(raw.get_ron());
         match probe {
-            Ok(Probe { passes: Some(_) }) => nested(raw).map(|group| PassItem::Group(Box::new(group))),
+            Ok(Probe { passes: Some(_) }) => {
+                nested(raw).map(|group| PassItem::Group(Box::new(group)))
+            }
             _ => nested(raw).map(|pass| PassItem::Pass(Box::new(pass))),
         }
     }
@@ -50,14 +52,21 @@ pub struct Group {
 /// The passes of a list, with what their groups say.
 pub fn ungrouped(items: Items<PassItem>) -> Vec<Loc<PassDecl>> {
     let of = |item: Loc<PassItem>| match item.value {
-        PassItem::Pass(pass) => vec![Loc { value: *pass, at: item.at }],
+        PassItem::Pass(pass) => vec![Loc {
+            value: *pass,
+            at: item.at,
+        }],
         PassItem::Group(group) => {
             let mut passes = ungrouped(group.passes);
             for pass in &mut passes {
                 pass.value.stage = pass.value.stage.take().or_else(|| group.stage.clone());
                 pass.value.outer.splice(0..0, group.when.clone());
                 pass.value.settles = pass.value.settles.take().or_else(|| group.settles.clone());
-                pass.value.converges = pass.value.converges.take().or_else(|| group.converges.clone());
+                pass.value.converges = pass
+                    .value
+                    .converges
+                    .take()
+                    .or_else(|| group.converges.clone());
             }
             passes
         }
@@ -145,12 +154,19 @@ impl PassDecl {
 
     /// What it says of a name of its shaders.
     pub fn bind(&self, name: &str) -> Option<&Bind> {
-        self.bind.0.iter().find(|(key, _)| key.value == name).map(|(_, bind)| &bind.value)
+        self.bind
+            .0
+            .iter()
+            .find(|(key, _)| key.value == name)
+            .map(|(_, bind)| &bind.value)
     }
 
     /// The member that holds the sizes of its dispatch or draw, and 32-bit words there, if a buffer holds them.
     pub fn command(&self) -> Option<(&Loc<Path>, u32)> {
-        match (self.dispatch.as_ref().map(|d| &d.value), self.draw.as_ref().map(|d| &d.value)) {
+        match (
+            self.dispatch.as_ref().map(|d| &d.value),
+            self.draw.as_ref().map(|d| &d.value),
+        ) {
             (Some(Dispatch::Indirect(command)), _) => Some((command, DISPATCH_WORDS)),
             (_, Some(Draw::Indirect(command))) => Some((command, DRAW_WORDS)),
             _ => None,
@@ -159,14 +175,30 @@ impl PassDecl {
 
     /// All its expressions.
     pub fn expressions(&self) -> Vec<&Ex> {
-        let mut list: Vec<&Ex> = self.conditions().chain(self.over_frames()).chain(&self.repeat).collect();
-        if let Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) = self.dispatch.as_ref().map(|d| &d.value) {
+        let mut list: Vec<&Ex> = self
+            .conditions()
+            .chain(self.over_frames())
+            .chain(&self.repeat)
+            .collect();
+        if let Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) =
+            self.dispatch.as_ref().map(|d| &d.value)
+        {
             list.extend([x, y, z]);
         }
         list.extend(self.bind.0.iter().flat_map(|(_, bind)| &bind.value.mip));
-        list.extend(self.color.0.iter().flat_map(|target| target.value.mip.iter().chain(&target.value.layer)));
+        list.extend(
+            self.color
+                .0
+                .iter()
+                .flat_map(|target| target.value.mip.iter().chain(&target.value.layer)),
+        );
         list.extend(self.depth.iter().flat_map(|d| &d.value.layer));
-        list.extend(self.raster.size.iter().flat_map(|size| [&size.value.0, &size.value.1]));
+        list.extend(
+            self.raster
+                .size
+                .iter()
+                .flat_map(|size| [&size.value.0, &size.value.1]),
+        );
         list.extend(&self.raster.samples);
         list
     }
@@ -204,7 +236,10 @@ pub enum Draw {
 fn draw<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Option<Loc<Draw>>, D::Error> {
     let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
     match raw.trim().get_ron() {
-        text @ "Scene" => Ok(Some(Loc { value: Draw::Scene { what: Which::All }, at: offset_in_file(text) })),
+        text @ "Scene" => Ok(Some(Loc {
+            value: Draw::Scene { what: Which::All },
+            at: offset_in_file(text),
+        })),
         _ => nested(raw),
     }
 }

@@ -63,7 +63,10 @@ impl<'de> Deserialize<'de> for Size {
         if !text.starts_with(|c: char| c.is_ascii_alphabetic()) {
             return nested(raw).map(|TwoOrThree::<Expr>(sizes)| Size(sizes, None));
         }
-        let screen = |name| Loc { value: Expr::new(name), at: offset_in_file(text) };
+        let screen = |name| Loc {
+            value: Expr::new(name),
+            at: offset_in_file(text),
+        };
         Ok(match nested(raw)? {
             SizeWord::Screen => Size(vec![screen("width"), screen("height")], None),
             SizeWord::Like(other) => Size(Vec::new(), Some(other)),
@@ -227,7 +230,9 @@ impl<'de> Deserialize<'de> for BufferSize {
         let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
         match raw.trim().get_ron() {
             "Struct" => Ok(BufferSize::Struct(None)),
-            text if text.starts_with(|c: char| c.is_ascii_alphabetic()) && !["true", "false"].contains(&text) => {
+            text if text.starts_with(|c: char| c.is_ascii_alphabetic())
+                && !["true", "false"].contains(&text) =>
+            {
                 let StructSize::Struct { of } = nested(raw)?;
                 Ok(BufferSize::Struct(Some(of)))
             }
@@ -273,6 +278,9 @@ impl<'de> Deserialize<'de> for Path {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let text = String::deserialize(deserializer)?;
         let (buffer, member) = text.split_once('.').unwrap_or((&text, ""));
-        Ok(Path { buffer: buffer.into(), member: member.into() })
+        Ok(Path {
+            buffer: buffer.into(),
+            member: member.into(),
+        })
     }
 }

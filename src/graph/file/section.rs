@@ -44,7 +44,12 @@ impl<'de> Deserialize<'de> for PartItem {
             return nested(raw).map(PartItem);
         }
         let texture = nested(raw)?;
-        Ok(PartItem(PartDecl { texture, kind: Kind::default(), title: None, focus: false }))
+        Ok(PartItem(PartDecl {
+            texture,
+            kind: Kind::default(),
+            title: None,
+            focus: false,
+        }))
     }
 }
 
@@ -132,6 +137,10 @@ pub struct ToolDecl {
 impl ToolDecl {
     /// The texture or buffer that is this to the tool.
     pub fn resource(&self, role: &str) -> Option<&Loc<String>> {
-        self.resources.0.iter().find(|(name, _)| name.value == role).map(|(_, resource)| resource)
+        self.resources
+            .0
+            .iter()
+            .find(|(name, _)| name.value == role)
+            .map(|(_, resource)| resource)
     }
 }

@@ -48,12 +48,18 @@ impl TableDecl {
         let mut names = HashSet::new();
         for Loc { value: column, at } in &self.columns.0 {
             if !names.insert(&column.name) {
-                list.push((*at, format!("two columns of '{title}' are named '{}'", column.name)));
+                list.push((
+                    *at,
+                    format!("two columns of '{title}' are named '{}'", column.name),
+                ));
             }
         }
         let (rows, buffer) = (&self.rows.value, &self.list.value.buffer);
         if rows.buffer != *buffer {
-            list.push((self.rows.at, format!("'{rows}' is not in '{buffer}', which holds the rows")));
+            list.push((
+                self.rows.at,
+                format!("'{rows}' is not in '{buffer}', which holds the rows"),
+            ));
         }
         list
     }

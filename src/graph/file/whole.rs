@@ -2,7 +2,9 @@
 
 use super::pass::PassItem;
 use super::resource::{AliasDecl, BufferDecl, NamedSampler, TextureDecl};
-use super::section::{CheckDecl, CompareDecl, PartItem, RefuseDecl, SceneNeeds, ToolDecl, ValueDecl, ViewDecl};
+use super::section::{
+    CheckDecl, CompareDecl, PartItem, RefuseDecl, SceneNeeds, ToolDecl, ValueDecl, ViewDecl,
+};
 use super::table::TableDecl;
 use crate::diagnostics::{Entries, Items, Loc, RawText};
 use crate::graph::param::Decl;

@@ -27,33 +27,65 @@ pub(super) fn resolve(
     if let Some(i) = EXTERNALS.iter().position(|e| e.name == resource_name) {
         let (fits, expected) = match EXTERNALS[i].kind {
             ExternalKind::Uniform => (*resource == Resource::Uniform, "a uniform block"),
-            ExternalKind::Storage => (matches!(resource, Resource::Buffer { write: false, .. }), "a read-only buffer"),
+            ExternalKind::Storage => (
+                matches!(resource, Resource::Buffer { write: false, .. }),
+                "a read-only buffer",
+            ),
             ExternalKind::TextureArray => {
-                let array = Resource::Sampled { shape: Shape::D2Array, compare: false, integer: false };
+                let array = Resource::Sampled {
+                    shape: Shape::D2Array,
+                    compare: false,
+                    integer: false,
+                };
                 (*resource == array, "a sampler2DArray")
             }
         };
         return match fits {
             true => Ok(Target::External(i)),
-            false => Err((format!("'{name}' is {expected} of the scene, and {}", declares()), None)),
+            false => Err((
+                format!("'{name}' is {expected} of the scene, and {}", declares()),
+                None,
+            )),
         };
     }
     if let Some(i) = graph.buffer(resource_name) {
         return match resource {
-            Resource::Buffer { write: true, .. } if bind.is_some_and(|d| d.history) => Err(read_only(resource_name)),
+            Resource::Buffer { write: true, .. } if bind.is_some_and(|d| d.history) => {
+                Err(read_only(resource_name))
+            }
             Resource::Buffer { .. } | Resource::Uniform => Ok(Target::Buffer(i)),
-            _ => Err((format!("'{resource_name}' is a buffer of the graph, and {}", declares()), None)),
+            _ => Err((
+                format!(
+                    "'{resource_name}' is a buffer of the graph, and {}",
+                    declares()
+                ),
+                None,
+            )),
         };
     }
     if let Some(i) = graph.texture(resource_name) {
-        let misfit = misfit(graph, resource_name, &graph.textures[i].1.value, bind, resource);
+        let misfit = misfit(
+            graph,
+            resource_name,
+            &graph.textures[i].1.value,
+            bind,
+            resource,
+        );
         return misfit.map_or(Ok(Target::Texture(i)), Err);
     }
-    let known = graph.resource_names().chain(graph.aliases.iter().map(|a| a.name.as_str()));
-    let known = known.chain(EXTERNALS.iter().map(|e| e.name)).chain(pass.bind.0.iter().map(|b| b.0.value.as_str()));
-    let help = nearest(name, known)
-        .unwrap_or_else(|| format!("declare it in the graph, or rename it: bind: {{\"{name}\": (of: \"...\")}}"));
-    let message = format!("'{name}' is {} that neither the graph nor the scene declares", describe(resource));
+    let known = graph
+        .resource_names()
+        .chain(graph.aliases.iter().map(|a| a.name.as_str()));
+    let known = known
+        .chain(EXTERNALS.iter().map(|e| e.name))
+        .chain(pass.bind.0.iter().map(|b| b.0.value.as_str()));
+    let help = nearest(name, known).unwrap_or_else(|| {
+        format!("declare it in the graph, or rename it: bind: {{\"{name}\": (of: \"...\")}}")
+    });
+    let message = format!(
+        "'{name}' is {} that neither the graph nor the scene declares",
+        describe(resource)
+    );
     Err((message, Some(help)))
 }
 
@@ -67,14 +99,20 @@ pub fn describe(resource: &Resource) -> String {
         Resource::Uniform => "a uniform block".into(),
         Resource::Buffer { write: true, .. } => "a buffer that it writes".into(),
         Resource::Buffer { .. } => "a buffer".into(),
-        Resource::Sampled { shape, compare, integer } => format!(
+        Resource::Sampled {
+            shape,
+            compare,
+            integer,
+        } => format!(
             "a {}sampler{}{}",
             if *integer { "u" } else { "" },
             shape.name(),
             if *compare { "Shadow" } else { "" }
         ),
         Resource::Storage { shape, format, .. } => {
-            let format = format.map_or(String::from("without a format"), |f| format!("of format {f}"));
+            let format = format.map_or(String::from("without a format"), |f| {
+                format!("of format {f}")
+            });
             format!("an image{} {format}", shape.name())
         }
     }
@@ -100,37 +138,61 @@ fn misfit(
     let wrong = |message: String, help: &str| Some((message, Some(help.into())));
     let declares = || format!("the shader declares {}", describe(resource));
     let (shape, wanted) = match resource {
-        Resource::Sampled { shape, .. } | Resource::Storage { shape, .. } => (*shape, bound_shape(texture)),
+        Resource::Sampled { shape, .. } | Resource::Storage { shape, .. } => {
+            (*shape, bound_shape(texture))
+        }
         _ => return Some((format!("'{name}' is a texture, and {}", declares()), None)),
     };
     if shape != wanted {
         let message = format!("'{name}' is {}, and {}", wanted.name(), declares());
         return wrong(message, &format!("declare it as {}", wanted.name()));
     }
-    let view = bind.and_then(|d| d.format.as_ref()).unwrap_or(&texture.format).value.as_str();
+    let view = bind
+        .and_then(|d| d.format.as_ref())
+        .unwrap_or(&texture.format)
+        .value
+        .as_str();
     let formats: Vec<Format> = match Format::named(view) {
         Some(f) => vec![f],
         None => {
-            let options = graph.params.param(view).map_or(&[][..], |p| p.kind.options());
+            let options = graph
+                .params
+                .param(view)
+                .map_or(&[][..], |p| p.kind.options());
             options.iter().filter_map(|o| Format::named(o)).collect()
         }
     };
     match resource {
-        Resource::Storage { format, read, write, .. } => {
+        Resource::Storage {
+            format,
+            read,
+            write,
+            ..
+        } => {
             if formats.iter().any(|f| f.is_depth()) {
-                return Some((format!("'{name}' is a depth texture, which cannot be a storage image"), None));
+                return Some((
+                    format!("'{name}' is a depth texture, which cannot be a storage image"),
+                    None,
+                ));
             }
             if formats.iter().any(|f| f.name.ends_with("_srgb")) {
-                return Some((format!("'{name}' is sRGB-encoded, which a storage image cannot be"), None));
+                return Some((
+                    format!("'{name}' is sRGB-encoded, which a storage image cannot be"),
+                    None,
+                ));
             }
             if *write && bind.is_some_and(|d| d.history) {
                 return Some(read_only(name));
             }
             match format {
                 Some(declared) if formats.iter().any(|f| f.name != *declared) => {
-                    let message = format!("'{name}' has format {view}, and the shader declares {declared}");
+                    let message =
+                        format!("'{name}' has format {view}, and the shader declares {declared}");
                     match formats.len() {
-                        1 => wrong(message, &format!("write layout({view}), or bind it as another declared view")),
+                        1 => wrong(
+                            message,
+                            &format!("write layout({view}), or bind it as another declared view"),
+                        ),
                         _ => wrong(
                             message,
                             "its format is a choice: write to a `writeonly` image without a format, and read by sampler",
@@ -144,11 +206,22 @@ fn misfit(
                 _ => None,
             }
         }
-        Resource::Sampled { compare, integer, .. } => {
-            let wants = formats.iter().any(|f| matches!(f.channels, Channels::Uint | Channels::Int));
+        Resource::Sampled {
+            compare, integer, ..
+        } => {
+            let wants = formats
+                .iter()
+                .any(|f| matches!(f.channels, Channels::Uint | Channels::Int));
             if wants != *integer {
-                let better = if wants { "declare a usampler" } else { "declare a sampler" };
-                return wrong(format!("'{name}' has format {view}, and {}", declares()), better);
+                let better = if wants {
+                    "declare a usampler"
+                } else {
+                    "declare a sampler"
+                };
+                return wrong(
+                    format!("'{name}' has format {view}, and {}", declares()),
+                    better,
+                );
             }
             let sampler = bind.and_then(|d| d.sampler).or(texture.sampler);
             let compares = sampler.is_some_and(|s| s.compare.is_some());
@@ -157,9 +230,14 @@ fn misfit(
             }
             let help = match compare {
                 true => "bind it with sampler: (compare: less_or_equal)",
-                false => "declare a Shadow sampler, or bind it with a sampler that does not compare",
+                false => {
+                    "declare a Shadow sampler, or bind it with a sampler that does not compare"
+                }
             };
-            wrong(format!("the sampler of '{name}' does not fit: {}", declares()), help)
+            wrong(
+                format!("the sampler of '{name}' does not fit: {}", declares()),
+                help,
+            )
         }
         _ => None,
     }

@@ -26,14 +26,21 @@ pub(super) struct Declared<'l> {
 impl<'l> Layouts<'l> {
     /// Of a graph with the shaders that are compiled.
     pub fn new(graph: &'l Graph, linked: &'l [Linked]) -> Layouts<'l> {
-        let mut declared: Vec<Vec<Declared<'l>>> = graph.buffers.iter().map(|_| Vec::new()).collect();
+        let mut declared: Vec<Vec<Declared<'l>>> =
+            graph.buffers.iter().map(|_| Vec::new()).collect();
         for link in linked {
             for bound in &link.bound {
                 let shader = link.stages.iter().find(|s| s.stage == bound.stage);
-                let (Some(layout), Some(shader)) = (&bound.layout, shader) else { continue };
+                let (Some(layout), Some(shader)) = (&bound.layout, shader) else {
+                    continue;
+                };
                 for case in &bound.cases {
                     if let Target::Buffer(b) = case.target {
-                        declared[b].push(Declared { layout, shader, name: &bound.name });
+                        declared[b].push(Declared {
+                            layout,
+                            shader,
+                            name: &bound.name,
+                        });
                     }
                 }
             }
@@ -43,18 +50,29 @@ impl<'l> Layouts<'l> {
 
     /// How a buffer's block lies; nothing where no compiled shader declares it.
     pub fn of(&self, buffer: &str) -> Option<&'l Layout> {
-        self.declared[self.graph.buffer(buffer)?].first().map(|d| d.layout)
+        self.declared[self.graph.buffer(buffer)?]
+            .first()
+            .map(|d| d.layout)
     }
 
     /// The byte and type of a member; nothing where no compiled shader declares the buffer.
     ///
     /// # Errors
     /// No such member.
-    pub(in crate::graph) fn find(&self, path: &Loc<Path>) -> Result<Option<(u32, Layout)>, Diagnostic> {
-        let Some(block) = self.of(&path.value.buffer) else { return Ok(None) };
+    pub(in crate::graph) fn find(
+        &self,
+        path: &Loc<Path>,
+    ) -> Result<Option<(u32, Layout)>, Diagnostic> {
+        let Some(block) = self.of(&path.value.buffer) else {
+            return Ok(None);
+        };
         block.find(&path.value.member).map(Some).map_err(|missing| {
             let of = [path.value.buffer.as_str(), missing.of.as_str()];
-            let of = of.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(".");
+            let of = of
+                .into_iter()
+                .filter(|part| !part.is_empty())
+                .collect::<Vec<_>>()
+                .join(".");
             let message = format!("'{of}' has no member '{}'", missing.name);
             let help = nearest(&missing.name, missing.known.iter().map(String::as_str));
             self.graph.sources.error(path.at, message).help(help)
@@ -65,14 +83,27 @@ impl<'l> Layouts<'l> {
     ///
     /// # Errors
     /// No such member, or one that is something else.
-    pub(in crate::graph) fn command(&self, path: &Loc<Path>, words: u32) -> Result<Option<u64>, Diagnostic> {
-        let Some(found) = self.find(path)? else { return Ok(None) };
+    pub(in crate::graph) fn command(
+        &self,
+        path: &Loc<Path>,
+        words: u32,
+    ) -> Result<Option<u64>, Diagnostic> {
+        let Some(found) = self.find(path)? else {
+            return Ok(None);
+        };
         let block = self.of(&path.value.buffer);
         if block.is_some_and(|b| b.has_uints(&found, words)) {
             return Ok(Some(u64::from(found.0)));
         }
-        let what = if words == DISPATCH_WORDS { "a dispatch takes its groups" } else { "a draw takes its counts" };
-        let message = format!("'{}' is of type {}; {what} from a uvec{words} or {words} uints", path.value, found.1);
+        let what = if words == DISPATCH_WORDS {
+            "a dispatch takes its groups"
+        } else {
+            "a draw takes its counts"
+        };
+        let message = format!(
+            "'{}' is of type {}; {what} from a uvec{words} or {words} uints",
+            path.value, found.1
+        );
         Err(self.graph.sources.error(path.at, message))
     }
 
@@ -81,11 +112,16 @@ impl<'l> Layouts<'l> {
     /// # Errors
     /// No such member, or one that is no whole number.
     pub fn check(&self, field: &Loc<Path>) -> Result<Option<u32>, Diagnostic> {
-        let Some((offset, layout)) = self.find(field)? else { return Ok(None) };
+        let Some((offset, layout)) = self.find(field)? else {
+            return Ok(None);
+        };
         match layout {
             Layout::Scalar(Scalar::Uint | Scalar::Int) => Ok(Some(offset / 4)),
             other => {
-                let message = format!("'{}' is of type {other}; a check needs a uint or an int", field.value);
+                let message = format!(
+                    "'{}' is of type {other}; a check needs a uint or an int",
+                    field.value
+                );
                 Err(self.graph.sources.error(field.at, message))
             }
         }
@@ -95,15 +131,24 @@ impl<'l> Layouts<'l> {
     ///
     /// # Errors
     /// The block ends in such an array and no count is given, or the reverse.
-    pub(in crate::graph) fn struct_size(&self, buffer: &str, counted: bool) -> Result<Option<(u32, u32)>, String> {
-        let Some(block) = self.of(buffer) else { return Ok(None) };
+    pub(in crate::graph) fn struct_size(
+        &self,
+        buffer: &str,
+        counted: bool,
+    ) -> Result<Option<(u32, u32)>, String> {
+        let Some(block) = self.of(buffer) else {
+            return Ok(None);
+        };
         match (block.endless(), counted) {
             (Some((_, stride)), true) => Ok(Some((block.bytes(), stride))),
             (None, false) => Ok(Some((block.bytes(), 0))),
-            (Some((last, _)), false) => {
-                Err(format!("'{buffer}' ends in '{}[]', whose length is the buffer's", last.name))
-            }
-            (None, true) => Err(format!("'{buffer}' does not end in an array without a length: `Struct` is its size")),
+            (Some((last, _)), false) => Err(format!(
+                "'{buffer}' ends in '{}[]', whose length is the buffer's",
+                last.name
+            )),
+            (None, true) => Err(format!(
+                "'{buffer}' does not end in an array without a length: `Struct` is its size"
+            )),
         }
     }
 }

@@ -16,21 +16,46 @@ fn resolve(decl: &TableDecl, layouts: &Layouts<'_>) -> Result<Option<Table>, Vec
     let error = |at: At, message: String| vec![layouts.graph.sources.error(at, message)];
     let find = |path| layouts.find(path).map_err(|e| vec![e]);
     let (list, count) = (&decl.list, &decl.rows);
-    let (Some((byte, rows)), Some((start, found))) = (find(count)?, find(list)?) else { return Ok(None) };
+    let (Some((byte, rows)), Some((start, found))) = (find(count)?, find(list)?) else {
+        return Ok(None);
+    };
     if rows != Layout::Scalar(Scalar::Uint) {
-        return Err(error(count.at, format!("'{}' is of type {rows}; rows are counted by a uint", count.value)));
+        return Err(error(
+            count.at,
+            format!(
+                "'{}' is of type {rows}; rows are counted by a uint",
+                count.value
+            ),
+        ));
     }
     let Layout::Array { of, stride, .. } = found else {
-        return Err(error(list.at, format!("'{}' is of type {found}; the rows of a table are an array's", list.value)));
+        return Err(error(
+            list.at,
+            format!(
+                "'{}' is of type {found}; the rows of a table are an array's",
+                list.value
+            ),
+        ));
     };
     let (mut columns, mut wrong) = (Vec::new(), Vec::new());
     for column in &decl.columns.0 {
         match column_of(&column.value, &of) {
             Ok(column) => columns.push(column),
-            Err((message, help)) => wrong.push(layouts.graph.sources.error(column.at, message).help(help)),
+            Err((message, help)) => {
+                wrong.push(layouts.graph.sources.error(column.at, message).help(help))
+            }
         }
     }
-    if wrong.is_empty() { Ok(Some(Table { rows: byte / 4, start, stride, columns })) } else { Err(wrong) }
+    if wrong.is_empty() {
+        Ok(Some(Table {
+            rows: byte / 4,
+            start,
+            stride,
+            columns,
+        }))
+    } else {
+        Err(wrong)
+    }
 }
 
 /// With its bytes in a row.
@@ -38,9 +63,17 @@ fn column_of(decl: &ColumnDecl, row: &Layout) -> Result<Column, (String, Option<
     let path = decl.of.as_deref().unwrap_or(&decl.name);
     // The rows of an array of numbers have no members.
     let whole = row.members().is_empty() && decl.of.is_none();
-    let (at, layout) = if whole { Ok((0, row.clone())) } else { row.find(path) }.map_err(|missing| {
+    let (at, layout) = if whole {
+        Ok((0, row.clone()))
+    } else {
+        row.find(path)
+    }
+    .map_err(|missing| {
         let known = missing.known.iter().map(String::as_str);
-        (format!("column '{}': a row has no member '{path}'", decl.name), nearest(&missing.name, known))
+        (
+            format!("column '{}': a row has no member '{path}'", decl.name),
+            nearest(&missing.name, known),
+        )
     })?;
     let kind = match layout {
         Layout::Scalar(Scalar::Uint) => CellKind::Uint,
@@ -50,16 +83,29 @@ fn column_of(decl: &ColumnDecl, row: &Layout) -> Result<Column, (String, Option<
         Layout::Vector(Scalar::Float, 3) => CellKind::Vec3,
         Layout::Vector(Scalar::Float, 4) => CellKind::Vec4,
         other => {
-            let message = format!("column '{}': '{path}' is of type {other}, which no table shows", decl.name);
-            return Err((message, Some("tables show uint, int, float, vec2, vec3 and vec4".into())));
+            let message = format!(
+                "column '{}': '{path}' is of type {other}, which no table shows",
+                decl.name
+            );
+            return Err((
+                message,
+                Some("tables show uint, int, float, vec2, vec3 and vec4".into()),
+            ));
         }
     };
-    Ok(Column { name: decl.name.clone(), at, kind, unit: decl.unit.clone() })
+    Ok(Column {
+        name: decl.name.clone(),
+        at,
+        kind,
+        unit: decl.unit.clone(),
+    })
 }
 
 /// A table of the graph; nothing where no compiled shader declares its buffer.
 pub fn table(layouts: &Layouts<'_>, number: usize) -> Option<Table> {
-    resolve(&layouts.graph.tables.get(number)?.value, layouts).ok().flatten()
+    resolve(&layouts.graph.tables.get(number)?.value, layouts)
+        .ok()
+        .flatten()
 }
 
 /// What is wrong with the names of members, with the shaders compiled so far; with `all` of them, a buffer that none
@@ -85,26 +131,52 @@ pub(super) fn mistakes(
         found.extend(resolve(&table.value, layouts).err().into_iter().flatten());
         named.push(&table.value.list);
     }
-    let mut buffers: BTreeSet<&str> = named.iter().map(|path| path.value.buffer.as_str()).collect();
+    let mut buffers: BTreeSet<&str> = named
+        .iter()
+        .map(|path| path.value.buffer.as_str())
+        .collect();
     for (name, buffer) in &graph.buffers {
         if let BufferSize::Struct(count) = &buffer.value.size.value {
             buffers.insert(name);
-            found.extend(layouts.struct_size(name, count.is_some()).err().map(|message| {
-                let help = count.is_none().then(|| String::from("say how many: Struct(of: \"...\")"));
-                graph.sources.error(buffer.value.size.at, message).help(help)
-            }));
+            found.extend(
+                layouts
+                    .struct_size(name, count.is_some())
+                    .err()
+                    .map(|message| {
+                        let help = count
+                            .is_none()
+                            .then(|| String::from("say how many: Struct(of: \"...\")"));
+                        graph
+                            .sources
+                            .error(buffer.value.size.at, message)
+                            .help(help)
+                    }),
+            );
             if all && layouts.of(name).is_none() {
                 let message = format!("no shader declares '{name}', so its struct has no size");
                 found.push(graph.sources.error(buffer.value.size.at, message));
             }
         }
     }
-    for path in named.iter().filter(|path| all && layouts.of(&path.value.buffer).is_none()) {
-        let message = format!("no shader declares '{}', so its members have no place", path.value.buffer);
+    for path in named
+        .iter()
+        .filter(|path| all && layouts.of(&path.value.buffer).is_none())
+    {
+        let message = format!(
+            "no shader declares '{}', so its members have no place",
+            path.value.buffer
+        );
         found.push(graph.sources.error(path.at, message));
     }
-    for (_, declared) in graph.buffers.iter().zip(&layouts.declared).filter(|(b, _)| buffers.contains(b.0.as_str())) {
-        let Some((first, others)) = declared.split_first() else { continue };
+    for (_, declared) in graph
+        .buffers
+        .iter()
+        .zip(&layouts.declared)
+        .filter(|(b, _)| buffers.contains(b.0.as_str()))
+    {
+        let Some((first, others)) = declared.split_first() else {
+            continue;
+        };
         for other in others.iter().filter(|o| o.layout != first.layout) {
             let there = place(first, String::new()).place;
             let there = format!("{}:{}", there.file.display(), there.line);

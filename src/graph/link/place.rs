@@ -8,39 +8,81 @@ use std::path::Path;
 
 /// An error at the line of a member, `type member;`, before the line where a shader declares its block; there, where
 /// the member has no line of its own.
-pub(super) fn at_member(shaders: &Path, shader: &Compiled, name: &str, member: &str, message: String) -> Diagnostic {
+pub(super) fn at_member(
+    shaders: &Path,
+    shader: &Compiled,
+    name: &str,
+    member: &str,
+    message: String,
+) -> Diagnostic {
     let block = at_declaration(shaders, shader, name, message);
     let declares = |line: &str| {
         let word = line.split_whitespace().nth(1).unwrap_or("");
-        word.strip_prefix(member).is_some_and(|rest| rest.starts_with([';', '[', ',']))
+        word.strip_prefix(member)
+            .is_some_and(|rest| rest.starts_with([';', '[', ',']))
     };
-    let text = shader.texts.iter().find(|(file, _)| block.place.file.ends_with(file.as_str())).map(|(_, t)| t);
+    let text = shader
+        .texts
+        .iter()
+        .find(|(file, _)| block.place.file.ends_with(file.as_str()))
+        .map(|(_, t)| t);
     let lines = (1u32..).zip(text.map_or("", String::as_str).lines());
-    match lines.take_while(|(n, _)| *n <= block.place.line).filter(|(_, line)| declares(line)).last() {
-        Some((line, source)) => {
-            Diagnostic { place: Place { line, ..block.place }, source: Some(source.trim().into()), ..block }
-        }
+    match lines
+        .take_while(|(n, _)| *n <= block.place.line)
+        .filter(|(_, line)| declares(line))
+        .last()
+    {
+        Some((line, source)) => Diagnostic {
+            place: Place {
+                line,
+                ..block.place
+            },
+            source: Some(source.trim().into()),
+            ..block
+        },
         None => block,
     }
 }
 
 /// An error at the line where a shader declares a name.
-pub(super) fn at_declaration(shaders: &Path, shader: &Compiled, name: &str, message: String) -> Diagnostic {
+pub(super) fn at_declaration(
+    shaders: &Path,
+    shader: &Compiled,
+    name: &str,
+    message: String,
+) -> Diagnostic {
     // The declaration stands after `uniform` or `buffer`, or closes a block: `} name;`.
     let declares = |line: &str| {
         has_word(line, name)
-            && (line.contains("uniform") || line.contains("buffer") || line.trim_start().starts_with('}'))
+            && (line.contains("uniform")
+                || line.contains("buffer")
+                || line.trim_start().starts_with('}'))
     };
     let main = std::iter::once(&shader.file).chain(shader.texts.keys());
     for file in main {
-        let Some(text) = shader.texts.get(file) else { continue };
+        let Some(text) = shader.texts.get(file) else {
+            continue;
+        };
         if let Some((number, line)) = (1u32..).zip(text.lines()).find(|(_, l)| declares(l)) {
             let path = find(shaders, file).unwrap_or_else(|| shaders.join(file));
-            let place = Place { file: path, line: number, column: 0 };
-            return Diagnostic { source: Some(line.trim().into()), ..Diagnostic::error(place, message) };
+            let place = Place {
+                file: path,
+                line: number,
+                column: 0,
+            };
+            return Diagnostic {
+                source: Some(line.trim().into()),
+                ..Diagnostic::error(place, message)
+            };
         }
     }
-    Diagnostic::error(Place { file: shaders.join(&shader.file), ..Place::default() }, message)
+    Diagnostic::error(
+        Place {
+            file: shaders.join(&shader.file),
+            ..Place::default()
+        },
+        message,
+    )
 }
 
 /// Whether a name stands in a text, and not inside a longer one.
@@ -85,11 +127,24 @@ mod tests {
 
     #[test]
     fn words_are_those_that_stand_alone() {
-        let text = "uniform Params { float a; } params;\nx = params.a_b + params.é.c - s.params.d; // end";
+        let text =
+            "uniform Params { float a; } params;\nx = params.a_b + params.é.c - s.params.d; // end";
         let words = Words::of([text, ""]);
-        for name in
-            ["params", "a", "a_b", "params.a_b", "params.a", "b", "é", "params.é", "é.c", "params.d", "d", "end", "e"]
-        {
+        for name in [
+            "params",
+            "a",
+            "a_b",
+            "params.a_b",
+            "params.a",
+            "b",
+            "é",
+            "params.é",
+            "é.c",
+            "params.d",
+            "d",
+            "end",
+            "e",
+        ] {
             assert_eq!(words.has(name), has_word(text, name), "{name}");
         }
         assert!(words.has("params.a_b") && !words.has("params.a") && !words.has("para"));

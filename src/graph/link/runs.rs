@@ -18,7 +18,10 @@ pub struct Runs {
 impl Runs {
     /// All passes, with the modules that these parameters choose.
     pub fn all(graph: &Graph, params: &Params) -> Runs {
-        Runs { passes: vec![true; graph.passes.len()], generated: generated(graph, params) }
+        Runs {
+            passes: vec![true; graph.passes.len()],
+            generated: generated(graph, params),
+        }
     }
 
     /// Whether a pass runs.
@@ -34,7 +37,9 @@ impl Runs {
                 || pass.value.shaders.0.is_empty()
                 || !link.stages.is_empty()
                     && link.stages.iter().all(|s| {
-                        self.generated.iter().all(|(name, text)| s.texts.get(name).is_none_or(|used| used == text))
+                        self.generated
+                            .iter()
+                            .all(|(name, text)| s.texts.get(name).is_none_or(|used| used == text))
                     })
         })
     }
@@ -42,14 +47,23 @@ impl Runs {
 
 /// Members of the named values in the uniform block of parameters.
 fn members(graph: &Graph) -> String {
-    let member = |v: &Named| format!("    {} {};\n", if v.whole { "int" } else { "float" }, v.name);
+    let member = |v: &Named| {
+        format!(
+            "    {} {};\n",
+            if v.whole { "int" } else { "float" },
+            v.name
+        )
+    };
     graph.values.iter().map(member).collect()
 }
 
 /// The files that the graph makes for its shaders.
 pub fn generated(graph: &Graph, params: &Params) -> Generated {
     let mut files = Generated::from([("params.glsl".into(), params.glsl(&members(graph)))]);
-    let fixed = graph.modules.iter().map(|(name, file)| (name.as_str(), file.as_str()));
+    let fixed = graph
+        .modules
+        .iter()
+        .map(|(name, file)| (name.as_str(), file.as_str()));
     for (name, file) in fixed.chain(params.modules()) {
         files.insert(module_include(name), format!("#include \"{file}\"\n"));
     }
@@ -59,6 +73,14 @@ pub fn generated(graph: &Graph, params: &Params) -> Generated {
 /// The passes that run. One whose `when` cannot be evaluated is among them: the plan says what is wrong with it.
 pub fn runs(set: &Evaluated<'_>) -> Runs {
     let holds = |when: &Ex| when.value.eval(&set.env) != Ok(0.0);
-    let passes = set.graph.passes.iter().map(|p| p.value.conditions().all(holds)).collect();
-    Runs { passes, generated: generated(set.graph, set.params) }
+    let passes = set
+        .graph
+        .passes
+        .iter()
+        .map(|p| p.value.conditions().all(holds))
+        .collect();
+    Runs {
+        passes,
+        generated: generated(set.graph, set.params),
+    }
 }

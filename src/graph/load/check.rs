@@ -22,17 +22,31 @@ pub(super) struct Check<'g> {
 
 impl<'g> Check<'g> {
     pub(super) fn new(graph: &'g Graph, folders: &'g Folders, found: Findings) -> Check<'g> {
-        let mut variables: HashSet<String> = BUILTIN_VARIABLES.iter().map(|v| (*v).to_string()).collect();
+        let mut variables: HashSet<String> =
+            BUILTIN_VARIABLES.iter().map(|v| (*v).to_string()).collect();
         variables.extend(graph.params.list.iter().flat_map(|p| p.variables()));
         variables.extend(graph.params.option_names().map(String::from));
         // Signatures are known only to shaders: which settings count follows from what these read.
-        variables.extend(graph.values.iter().filter(|v| v.signs.is_none()).map(|v| v.name.clone()));
-        Check { graph, folders, found, variables }
+        variables.extend(
+            graph
+                .values
+                .iter()
+                .filter(|v| v.signs.is_none())
+                .map(|v| v.name.clone()),
+        );
+        Check {
+            graph,
+            folders,
+            found,
+            variables,
+        }
     }
 
     /// Names and values of parameters.
     pub(super) fn settings(&mut self, list: &Entries<RawText>) {
-        list.0.iter().for_each(|(name, text)| self.setting(name, text));
+        list.0
+            .iter()
+            .for_each(|(name, text)| self.setting(name, text));
     }
 
     /// A side of a comparison: parameters of this graph. Another graph may be missing, as in captures.
@@ -60,16 +74,27 @@ impl<'g> Check<'g> {
     pub(super) fn names(&mut self) {
         let graph = self.graph;
         let mut seen: HashSet<&str> = HashSet::new();
-        let resources =
-            graph.textures.iter().map(|(n, t)| (n, t.at)).chain(graph.buffers.iter().map(|(n, b)| (n, b.at)));
+        let resources = graph
+            .textures
+            .iter()
+            .map(|(n, t)| (n, t.at))
+            .chain(graph.buffers.iter().map(|(n, b)| (n, b.at)));
         for (name, at) in resources.chain(graph.aliases.iter().map(|a| (&a.name, a.at))) {
             if !name.starts_with(|c: char| c.is_ascii_alphabetic())
                 || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
             {
-                self.error(at, format!("'{name}' cannot be a resource's name: letters, digits and underscores only"));
+                self.error(
+                    at,
+                    format!(
+                        "'{name}' cannot be a resource's name: letters, digits and underscores only"
+                    ),
+                );
             }
             if EXTERNALS.iter().any(|e| e.name == *name) {
-                self.error(at, format!("'{name}' is a resource that every scene offers; choose another name"));
+                self.error(
+                    at,
+                    format!("'{name}' is a resource that every scene offers; choose another name"),
+                );
             }
             if !seen.insert(name) {
                 self.error(at, format!("resource '{name}' is declared twice"));
@@ -78,7 +103,10 @@ impl<'g> Check<'g> {
         let mut passes: HashSet<&str> = HashSet::new();
         for name in graph.passes.iter().map(|p| &p.value.name) {
             if !passes.insert(&name.value) {
-                let message = format!("two passes are named '{}'; timings could not tell them apart", name.value);
+                let message = format!(
+                    "two passes are named '{}'; timings could not tell them apart",
+                    name.value
+                );
                 self.error(name.at, message);
             }
         }
@@ -88,22 +116,33 @@ impl<'g> Check<'g> {
     pub(super) fn modules(&mut self, fixed: &Entries<String>) {
         for (name, _) in &fixed.0 {
             if !is_identifier(&name.value) {
-                self.error(name.at, format!("'{}' cannot be a module's name", name.value));
+                self.error(
+                    name.at,
+                    format!("'{}' cannot be a module's name", name.value),
+                );
             }
             if self.graph.params.index(&name.value).is_some() {
-                let message =
-                    format!("module '{}' is a parameter, which an option is chosen for: remove one", name.value);
+                let message = format!(
+                    "module '{}' is a parameter, which an option is chosen for: remove one",
+                    name.value
+                );
                 self.error(name.at, message);
             }
         }
         // Of a choice, each option's file is looked for when it is set: a capture holds no other.
         for (_, file) in &fixed.0 {
             if crate::shader::find(&self.folders.shaders, &file.value).is_none() {
-                let folder = std::path::Path::new(&file.value).parent().unwrap_or("".as_ref());
+                let folder = std::path::Path::new(&file.value)
+                    .parent()
+                    .unwrap_or("".as_ref());
                 let known = files_of(&self.folders.shaders.join(folder));
-                let known: Vec<String> = known.iter().map(|f| folder.join(f).to_string_lossy().into_owned()).collect();
+                let known: Vec<String> = known
+                    .iter()
+                    .map(|f| folder.join(f).to_string_lossy().into_owned())
+                    .collect();
                 let help = nearest(&file.value, known.iter().map(String::as_str));
-                self.found.help(file.at, format!("no shader file '{}'", file.value), help);
+                self.found
+                    .help(file.at, format!("no shader file '{}'", file.value), help);
             }
         }
     }
@@ -114,13 +153,25 @@ impl<'g> Check<'g> {
             if let Some(stage) = &named.signs {
                 let stages = || self.graph.passes.iter().map(|p| p.value.stage());
                 if !stages().any(|s| s == stage) {
-                    let message = format!("value '{}': no pass belongs to a stage '{stage}'", named.name);
+                    let message = format!(
+                        "value '{}': no pass belongs to a stage '{stage}'",
+                        named.name
+                    );
                     self.found.unknown(named.expr.at, stage, message, stages());
                 }
             }
             // A value is the same in all of a frame.
-            for name in named.expr.value.variables().iter().filter(|v| ["index", "mip"].contains(&v.as_str())) {
-                let message = format!("value '{}' reads '{name}', which differs within a frame", named.name);
+            for name in named
+                .expr
+                .value
+                .variables()
+                .iter()
+                .filter(|v| ["index", "mip"].contains(&v.as_str()))
+            {
+                let message = format!(
+                    "value '{}' reads '{name}', which differs within a frame",
+                    named.name
+                );
                 self.error(named.expr.at, message);
             }
         }
@@ -131,7 +182,12 @@ impl<'g> Check<'g> {
         if let Some(mistake) = ex.value.mistake() {
             self.error(ex.at, format!("'{text}' is no expression: {mistake}"));
         }
-        for name in ex.value.variables().iter().filter(|v| !self.variables.contains(*v)) {
+        for name in ex
+            .value
+            .variables()
+            .iter()
+            .filter(|v| !self.variables.contains(*v))
+        {
             let known = self.variables.iter().map(String::as_str);
             let why = match self.graph.values.iter().any(|v| v.name == *name) {
                 true => format!("'{text}': '{name}' is a signature, which only shaders can read"),
@@ -141,7 +197,12 @@ impl<'g> Check<'g> {
         }
         // A choice that could not be read may have had the option.
         for (message, help) in super::choices::misuses(&ex.value, &self.graph.params) {
-            if ex.value.variables().iter().all(|v| self.found.is_unknown(v)) {
+            if ex
+                .value
+                .variables()
+                .iter()
+                .all(|v| self.found.is_unknown(v))
+            {
                 self.found.help(ex.at, message, help);
             }
         }
@@ -159,13 +220,22 @@ impl<'g> Check<'g> {
 
     pub(super) fn buffer_name(&mut self, name: &Loc<String>) -> bool {
         let graph = self.graph;
-        graph.buffer(&name.value).is_some() || self.missing(name, "buffer", graph.buffers.iter().map(|b| b.0.as_str()))
+        graph.buffer(&name.value).is_some()
+            || self.missing(name, "buffer", graph.buffers.iter().map(|b| b.0.as_str()))
     }
 
     /// Reports a name that stands for nothing of a kind; false.
-    fn missing<'n>(&mut self, name: &Loc<String>, what: &str, known: impl Iterator<Item = &'n str>) -> bool {
+    fn missing<'n>(
+        &mut self,
+        name: &Loc<String>,
+        what: &str,
+        known: impl Iterator<Item = &'n str>,
+    ) -> bool {
         if self.graph.alias(&name.value).is_some() {
-            let message = format!("'{}' is an alias or sampler, which passes bind: name a {what}", name.value);
+            let message = format!(
+                "'{}' is an alias or sampler, which passes bind: name a {what}",
+                name.value
+            );
             self.error(name.at, message);
         } else {
             let message = format!("no {what} is named '{}'", name.value);
@@ -179,18 +249,32 @@ impl<'g> Check<'g> {
         match params.param(&name.value) {
             Some(param) if param.kind == Kind::Vector(2) => {}
             Some(param) => {
-                let message =
-                    format!("'{}' holds {} and cannot be the pointer: it must be a Vec2", name.value, param.expected());
+                let message = format!(
+                    "'{}' holds {} and cannot be the pointer: it must be a Vec2",
+                    name.value,
+                    param.expected()
+                );
                 self.error(name.at, message);
             }
             None if !self.found.is_unknown(&name.value) => {}
             None => {
-                let known = params.list.iter().filter(|p| p.kind == Kind::Vector(2)).map(|p| p.name.as_str());
+                let known = params
+                    .list
+                    .iter()
+                    .filter(|p| p.kind == Kind::Vector(2))
+                    .map(|p| p.name.as_str());
                 let help = match known.clone().next() {
-                    None => Some(format!("declare it: Vec2(name: \"{}\", default: (-1, -1), ...)", name.value)),
+                    None => Some(format!(
+                        "declare it: Vec2(name: \"{}\", default: (-1, -1), ...)",
+                        name.value
+                    )),
                     Some(_) => nearest(&name.value, known),
                 };
-                self.found.help(name.at, format!("no Vec2 parameter is named '{}'", name.value), help);
+                self.found.help(
+                    name.at,
+                    format!("no Vec2 parameter is named '{}'", name.value),
+                    help,
+                );
             }
         }
     }
@@ -201,7 +285,12 @@ impl<'g> Check<'g> {
         for part in caption.value.split('{').skip(1) {
             let name = part.split('}').next().unwrap_or_default();
             if params.param(name).is_none() {
-                self.found.unknown(caption.at, name, format!("no parameter is named '{name}'"), params.names());
+                self.found.unknown(
+                    caption.at,
+                    name,
+                    format!("no parameter is named '{name}'"),
+                    params.names(),
+                );
             }
         }
     }
@@ -210,13 +299,20 @@ impl<'g> Check<'g> {
     pub(super) fn pinned(&mut self, list: &Entries<String>) {
         let params = &self.graph.params;
         for (name, title) in &list.0 {
-            let elsewhere = params.retired.iter().any(|(retired, _)| *retired == name.value);
+            let elsewhere = params
+                .retired
+                .iter()
+                .any(|(retired, _)| *retired == name.value);
             if params.index(&name.value).is_none() && !elsewhere {
                 let message = format!("no parameter '{}' to pin", name.value);
-                self.found.unknown(name.at, &name.value, message, params.names());
+                self.found
+                    .unknown(name.at, &name.value, message, params.names());
             }
             if title.value.trim().is_empty() || title.value.contains('\n') {
-                self.error(title.at, format!("'{}' is pinned without a title of one line", name.value));
+                self.error(
+                    title.at,
+                    format!("'{}' is pinned without a title of one line", name.value),
+                );
             }
         }
     }
@@ -228,7 +324,10 @@ impl<'g> Check<'g> {
                 self.missing(name, "texture or buffer", graph.resource_names());
             }
         }
-        tool.settings.0.iter().for_each(|view| self.settings(&view.value.set));
+        tool.settings
+            .0
+            .iter()
+            .for_each(|view| self.settings(&view.value.set));
     }
 
     pub(super) fn check(&mut self, check: &CheckDecl) {
@@ -240,17 +339,29 @@ impl<'g> Check<'g> {
 
     /// The buffer of a path, and that a member is named.
     pub(super) fn member(&mut self, path: &Loc<Path>) {
-        let known = self.buffer_name(&Loc { value: path.value.buffer.clone(), at: path.at });
+        let known = self.buffer_name(&Loc {
+            value: path.value.buffer.clone(),
+            at: path.at,
+        });
         if known && path.value.member.is_empty() {
-            self.error(path.at, format!("name a member of '{0}': \"{0}.member\"", path.value.buffer));
+            self.error(
+                path.at,
+                format!("name a member of '{0}': \"{0}.member\"", path.value.buffer),
+            );
         }
     }
 
     pub(super) fn tables(&mut self, tables: &[Loc<TableDecl>]) {
         for (i, table) in tables.iter().enumerate() {
             self.member(&table.value.list);
-            if tables[..i].iter().any(|t| t.value.title == table.value.title) {
-                self.error(table.at, format!("two tables have the title '{}'", table.value.title));
+            if tables[..i]
+                .iter()
+                .any(|t| t.value.title == table.value.title)
+            {
+                self.error(
+                    table.at,
+                    format!("two tables have the title '{}'", table.value.title),
+                );
             }
             for (at, message) in table.value.mistakes(table.at) {
                 self.error(at, message);
@@ -265,7 +376,10 @@ impl<'g> Check<'g> {
                 self.error(texture.at, format!("'{name}' is 3D and cannot have layers"));
             }
             if t.transient && t.mips.is_some() {
-                self.error(texture.at, format!("'{name}' is transient and cannot have mips"));
+                self.error(
+                    texture.at,
+                    format!("'{name}' is transient and cannot have mips"),
+                );
             }
             self.kept_or_not(name, t.history, t.transient, texture.at);
             self.exprs(t.expressions());
@@ -276,21 +390,31 @@ impl<'g> Check<'g> {
                 if let [Some(a), Some(b)] = sizes
                     && a != b
                 {
-                    let message =
-                        format!("'{name}' has texels of {a} bytes and cannot be viewed as '{}' of {b}", view.value);
+                    let message = format!(
+                        "'{name}' has texels of {a} bytes and cannot be viewed as '{}' of {b}",
+                        view.value
+                    );
                     self.error(view.at, message);
                 }
             }
         }
         for (name, buffer) in &self.graph.buffers {
-            self.kept_or_not(name, buffer.value.history, buffer.value.transient, buffer.at);
+            self.kept_or_not(
+                name,
+                buffer.value.history,
+                buffer.value.transient,
+                buffer.at,
+            );
             self.exprs(buffer.value.size.value.expression());
         }
     }
 
     fn kept_or_not(&mut self, name: &str, history: bool, transient: bool, at: At) {
         if history && transient {
-            self.error(at, format!("'{name}' has a history and is transient: one or the other"));
+            self.error(
+                at,
+                format!("'{name}' has a history and is transient: one or the other"),
+            );
         }
     }
 
@@ -300,8 +424,10 @@ impl<'g> Check<'g> {
                 self.exprs(&case.when);
                 match self.graph.alias(&case.bind.of.value) {
                     Some(_) => {
-                        let message =
-                            format!("'{}' is an alias or sampler itself: name a texture or buffer", case.bind.of.value);
+                        let message = format!(
+                            "'{}' is an alias or sampler itself: name a texture or buffer",
+                            case.bind.of.value
+                        );
                         self.error(case.bind.of.at, message);
                     }
                     None => self.bind(&case.bind),
@@ -315,24 +441,46 @@ impl<'g> Check<'g> {
             return;
         }
         let params = &self.graph.params;
-        let options = params.param(&name.value).filter(|_| or_choice).map_or(&[][..], |p| p.kind.options());
+        let options = params
+            .param(&name.value)
+            .filter(|_| or_choice)
+            .map_or(&[][..], |p| p.kind.options());
         for option in options.iter().filter(|o| Format::named(o).is_none()) {
-            self.error(name.at, format!("option '{option}' of '{}' is no format", name.value));
+            self.error(
+                name.at,
+                format!("option '{option}' of '{}' is no format", name.value),
+            );
         }
         if options.is_empty() {
-            let choices = params.list.iter().filter(|p| or_choice && !p.kind.options().is_empty());
+            let choices = params
+                .list
+                .iter()
+                .filter(|p| or_choice && !p.kind.options().is_empty());
             let mut known: Vec<&str> = Format::names().collect();
             known.extend(choices.map(|p| p.name.as_str()));
-            self.found.unknown(name.at, &name.value, format!("no format is named '{}'", name.value), known);
+            self.found.unknown(
+                name.at,
+                &name.value,
+                format!("no format is named '{}'", name.value),
+                known,
+            );
         }
     }
 
     pub(super) fn is_volume(&self, texture: &str) -> bool {
-        self.graph.texture(texture).is_some_and(|t| self.graph.textures[t].1.value.is_volume())
+        self.graph
+            .texture(texture)
+            .is_some_and(|t| self.graph.textures[t].1.value.is_volume())
     }
 }
 
 pub(super) fn files_of(folder: &std::path::Path) -> Vec<String> {
-    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
-    entries.flatten().filter(|e| e.path().is_file()).map(|e| e.file_name().to_string_lossy().into_owned()).collect()
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return Vec::new();
+    };
+    entries
+        .flatten()
+        .filter(|e| e.path().is_file())
+        .map(|e| e.file_name().to_string_lossy().into_owned())
+        .collect()
 }

@@ -23,7 +23,11 @@ pub(super) type Misuse = (String, Option<String>);
 
 /// Comparisons that cannot hold, and choices and options that stand where a number belongs.
 pub(super) fn misuses(expr: &Expr, params: &Params) -> Vec<Misuse> {
-    let mut walk = Walk { params, text: &expr.text, found: Vec::new() };
+    let mut walk = Walk {
+        params,
+        text: &expr.text,
+        found: Vec::new(),
+    };
     for statement in expr.statements() {
         match statement {
             Stmt::Expr(root) => walk.plain(root),
@@ -47,7 +51,9 @@ impl<'a> Walk<'a> {
     fn type_of(&mut self, expr: &'a rhai::Expr) -> Type<'a> {
         match expr {
             rhai::Expr::Variable(v, ..) => self.named(&v.1),
-            rhai::Expr::FnCall(call, _) | rhai::Expr::MethodCall(call, _) => self.call(&call.name, &call.args),
+            rhai::Expr::FnCall(call, _) | rhai::Expr::MethodCall(call, _) => {
+                self.call(&call.name, &call.args)
+            }
             rhai::Expr::And(parts, _) | rhai::Expr::Or(parts, _) => {
                 parts.iter().for_each(|part| self.plain(part));
                 Type::Plain
@@ -120,18 +126,31 @@ impl<'a> Walk<'a> {
             (Type::Choice(choice, known), Type::Options(options))
             | (Type::Options(options), Type::Choice(choice, known)) => {
                 for option in options.iter().filter(|o| !known.iter().any(|k| k == *o)) {
-                    let near = nearest(option, known.iter().map(String::as_str)).unwrap_or_default();
-                    let help = [near, self.owners(option)].into_iter().filter(|h| !h.is_empty()).collect::<Vec<_>>();
-                    self.tell(format!("'{choice}' has no option '{option}'"), Some(help.join("; ")));
+                    let near =
+                        nearest(option, known.iter().map(String::as_str)).unwrap_or_default();
+                    let help = [near, self.owners(option)]
+                        .into_iter()
+                        .filter(|h| !h.is_empty())
+                        .collect::<Vec<_>>();
+                    self.tell(
+                        format!("'{choice}' has no option '{option}'"),
+                        Some(help.join("; ")),
+                    );
                 }
             }
             (Type::Choice(a, _), Type::Choice(b, _)) => {
                 let message = format!("'{a}' and '{b}' are two choices, which never compare");
-                self.tell(message, self.comparison(&Type::Choice(a, self.options_of(a))));
+                self.tell(
+                    message,
+                    self.comparison(&Type::Choice(a, self.options_of(a))),
+                );
             }
             (Type::Options(_), Type::Options(_)) => {
                 let what = self.describe(a).unwrap_or_default();
-                self.tell(format!("{what}, compared with another option"), self.comparison(a));
+                self.tell(
+                    format!("{what}, compared with another option"),
+                    self.comparison(a),
+                );
             }
             (Type::Unknown, _) | (_, Type::Unknown) => {}
             (a, b) => {
@@ -159,7 +178,9 @@ impl<'a> Walk<'a> {
             }
             Type::Plain | Type::Unknown => return None,
         };
-        Some(format!("compare a choice with its options: {choice} == {option}"))
+        Some(format!(
+            "compare a choice with its options: {choice} == {option}"
+        ))
     }
 
     fn options_of(&self, choice: &str) -> &'a [String] {
@@ -168,11 +189,20 @@ impl<'a> Walk<'a> {
 
     fn choices_with(&self, option: &str) -> Vec<&'a str> {
         let has = |kind: &Kind| kind.options().iter().any(|o| o == option);
-        self.params.list.iter().filter(|p| has(&p.kind)).map(|p| p.name.as_str()).collect()
+        self.params
+            .list
+            .iter()
+            .filter(|p| has(&p.kind))
+            .map(|p| p.name.as_str())
+            .collect()
     }
 
     fn owners(&self, option: &str) -> String {
-        let names: Vec<String> = self.choices_with(option).iter().map(|c| format!("'{c}'")).collect();
+        let names: Vec<String> = self
+            .choices_with(option)
+            .iter()
+            .map(|c| format!("'{c}'"))
+            .collect();
         format!("'{option}' is an option of {}", names.join(" and "))
     }
 

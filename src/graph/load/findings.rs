@@ -36,7 +36,8 @@ impl Findings {
         known: impl IntoIterator<Item = &'n str>,
     ) {
         if self.is_unknown(name) {
-            self.errors.push(self.sources.error(at, message).nearest(name, known));
+            self.errors
+                .push(self.sources.error(at, message).nearest(name, known));
         }
     }
 }

@@ -36,14 +36,27 @@ const RETIRED: &str = "retired.ron";
 
 impl<'f> Include<'f> {
     pub fn new(folders: &'f Folders) -> Include<'f> {
-        Include { folders, found: Findings::default(), files: Vec::new(), stack: Vec::new(), retired: Vec::new() }
+        Include {
+            folders,
+            found: Findings::default(),
+            files: Vec::new(),
+            stack: Vec::new(),
+            retired: Vec::new(),
+        }
     }
 
     /// Reads the names that are no more; none where the folder has no such file.
     pub fn retired(&mut self) -> Retired {
-        let Findings { sources, errors, broken, .. } = &mut self.found;
+        let Findings {
+            sources,
+            errors,
+            broken,
+            ..
+        } = &mut self.found;
         let file = sources.read(&self.folders.passes.join(RETIRED)).ok();
-        let retired: Retired = file.and_then(|f| sources.parse(f, errors, broken)).unwrap_or_default();
+        let retired: Retired = file
+            .and_then(|f| sources.parse(f, errors, broken))
+            .unwrap_or_default();
         self.retired = super::texts(&retired.graphs);
         retired
     }
@@ -55,24 +68,51 @@ impl<'f> Include<'f> {
             return;
         }
         if in_circle {
-            let name = |p: &Path| p.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let circle: Vec<String> = self.stack.iter().skip_while(|p| *p != path).map(|p| name(p)).collect();
-            let message = format!("'{}' includes itself: {} > {}", path.display(), circle.join(" > "), name(path));
+            let name = |p: &Path| {
+                p.file_name()
+                    .unwrap_or_default()
+                    .to_string_lossy()
+                    .into_owned()
+            };
+            let circle: Vec<String> = self
+                .stack
+                .iter()
+                .skip_while(|p| *p != path)
+                .map(|p| name(p))
+                .collect();
+            let message = format!(
+                "'{}' includes itself: {} > {}",
+                path.display(),
+                circle.join(" > "),
+                name(path)
+            );
             return self.error(from, message);
         }
         if self.stack.len() >= MAX_DEPTH || self.found.sources.paths().count() >= MAX_FILES {
             let names: Vec<String> = self.stack.iter().map(|p| p.display().to_string()).collect();
             self.found.partial = true;
-            let message = format!("a graph has at most {MAX_FILES} files, {MAX_DEPTH} deep: {}", chain(&names));
+            let message = format!(
+                "a graph has at most {MAX_FILES} files, {MAX_DEPTH} deep: {}",
+                chain(&names)
+            );
             return self.error(from, message);
         }
         let file = match self.found.sources.read(path) {
             Ok(file) => file,
             Err(e) => {
-                let known = if path.exists() { Vec::new() } else { ron_files(&self.folders.passes) };
-                let name = path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
+                let known = if path.exists() {
+                    Vec::new()
+                } else {
+                    ron_files(&self.folders.passes)
+                };
+                let name = path
+                    .file_name()
+                    .map_or(String::new(), |n| n.to_string_lossy().into_owned());
                 let found = from.map_or(e.clone(), |at| self.found.sources.error(at, e.message));
-                let instead = self.retired.iter().find(|(graph, _)| *graph == name && !path.exists());
+                let instead = self
+                    .retired
+                    .iter()
+                    .find(|(graph, _)| *graph == name && !path.exists());
                 self.found.errors.push(match instead {
                     Some((_, instead)) => found.help(Some(instead.clone())),
                     None => found.nearest(&name, known.iter().map(String::as_str)),
@@ -81,7 +121,12 @@ impl<'f> Include<'f> {
                 return;
             }
         };
-        let Findings { sources, errors, broken, .. } = &mut self.found;
+        let Findings {
+            sources,
+            errors,
+            broken,
+            ..
+        } = &mut self.found;
         let Some(parsed) = sources.parse::<GraphFile>(file, errors, broken) else {
             self.found.partial = true;
             return;
@@ -89,10 +134,16 @@ impl<'f> Include<'f> {
         self.stack.push(path.to_path_buf());
         for name in &parsed.include.0 {
             // A capture's graph comes from strangers: it may not quote files from elsewhere.
-            match Path::new(&name.value).components().all(|c| matches!(c, Component::Normal(_))) {
+            match Path::new(&name.value)
+                .components()
+                .all(|c| matches!(c, Component::Normal(_)))
+            {
                 true => self.file(&self.folders.passes.join(&name.value), Some(name.at)),
                 false => {
-                    let message = format!("the include '{}' leads out of the folder of graphs", name.value);
+                    let message = format!(
+                        "the include '{}' leads out of the folder of graphs",
+                        name.value
+                    );
                     self.found.partial = true;
                     self.error(Some(name.at), message);
                 }
@@ -105,13 +156,18 @@ impl<'f> Include<'f> {
     fn error(&mut self, from: Option<At>, message: String) {
         match from {
             Some(at) => self.found.error(at, message),
-            None => self.found.errors.push(Diagnostic::error(Place::default(), message)),
+            None => self
+                .found
+                .errors
+                .push(Diagnostic::error(Place::default(), message)),
         }
     }
 }
 
 fn ron_files(folder: &Path) -> Vec<String> {
-    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return Vec::new();
+    };
     entries
         .flatten()
         .map(|e| e.file_name().to_string_lossy().into_owned())

@@ -3,12 +3,19 @@
 use super::findings::Findings;
 use crate::diagnostics::{Entries, Items, Loc, RawText};
 use crate::graph::definition::{Alias, AliasCase};
-use crate::graph::file::{AliasDecl, Bind, GraphFile, NamedSampler, PassDecl, SamplerDecl, Size, TextureDecl};
+use crate::graph::file::{
+    AliasDecl, Bind, GraphFile, NamedSampler, PassDecl, SamplerDecl, Size, TextureDecl,
+};
 
 /// Adds a file's sections to those of the files before it.
 pub(super) fn add(all: &mut GraphFile, file: GraphFile) {
     // A parameter takes the place of an included file's value, and of the module that it has set once and for all.
-    let is_param = |name: &Loc<String>| file.params.0.iter().any(|p| p.value.name.value == name.value);
+    let is_param = |name: &Loc<String>| {
+        file.params
+            .0
+            .iter()
+            .any(|p| p.value.name.value == name.value)
+    };
     all.modules.0.retain(|(name, _)| !is_param(name));
     all.values.0.retain(|(name, _)| !is_param(name));
     replace(&mut all.modules, file.modules);
@@ -48,7 +55,9 @@ pub(super) fn leave_out_fixed(file: &mut GraphFile) {
     let are_free = |set: &Entries<RawText>| set.0.iter().all(|(name, _)| is_free(name));
     file.pinned.0.retain(|(name, _)| is_free(name));
     file.fit.0.retain(|(name, _)| is_free(name));
-    file.compare.0.retain(|c| are_free(&c.value.a) && are_free(&c.value.b));
+    file.compare
+        .0
+        .retain(|c| are_free(&c.value.a) && are_free(&c.value.b));
     file.views.0.retain(|view| are_free(&view.value.set));
     file.ablation.0.retain(|step| are_free(&step.value.set));
 }
@@ -58,7 +67,8 @@ fn append<T>(all: &mut Items<T>, more: Items<T>) {
 }
 
 fn replace<T>(all: &mut Entries<T>, more: Entries<T>) {
-    all.0.retain(|(name, _)| !more.0.iter().any(|(other, _)| other.value == name.value));
+    all.0
+        .retain(|(name, _)| !more.0.iter().any(|(other, _)| other.value == name.value));
     all.0.extend(more.0);
 }
 
@@ -69,9 +79,18 @@ fn later<T>(all: &mut Option<T>, more: Option<T>) {
 }
 
 /// Adds a pass at the end, or after the one that it names.
-pub(super) fn insert_pass(passes: &mut Vec<Loc<PassDecl>>, pass: Loc<PassDecl>, found: &mut Findings) {
-    let Some(after) = &pass.value.after else { return passes.push(pass) };
-    match passes.iter().position(|p| p.value.name.value == after.value) {
+pub(super) fn insert_pass(
+    passes: &mut Vec<Loc<PassDecl>>,
+    pass: Loc<PassDecl>,
+    found: &mut Findings,
+) {
+    let Some(after) = &pass.value.after else {
+        return passes.push(pass);
+    };
+    match passes
+        .iter()
+        .position(|p| p.value.name.value == after.value)
+    {
         Some(i) => passes.insert(i + 1, pass),
         None if found.is_unknown(&after.value) => {
             let known = passes.iter().map(|p| p.value.name.value.as_str());
@@ -84,13 +103,18 @@ pub(super) fn insert_pass(passes: &mut Vec<Loc<PassDecl>>, pass: Loc<PassDecl>, 
 
 /// Gives the textures that are as large as another its size.
 pub(super) fn sizes_of_others(textures: &mut [(String, Loc<TextureDecl>)], found: &mut Findings) {
-    let sizes: Vec<(String, Size)> = textures.iter().map(|(name, t)| (name.clone(), t.value.size.clone())).collect();
+    let sizes: Vec<(String, Size)> = textures
+        .iter()
+        .map(|(name, t)| (name.clone(), t.value.size.clone()))
+        .collect();
     let size_of = |name: &str| sizes.iter().find(|s| s.0 == name).map(|s| &s.1);
     for (name, texture) in textures {
         let mut at = texture.value.size.1.clone();
         // As many steps as there are textures: more go in a circle.
         for _ in 0..=sizes.len() {
-            let Some(size) = at.as_ref().and_then(|other| size_of(&other.value)) else { break };
+            let Some(size) = at.as_ref().and_then(|other| size_of(&other.value)) else {
+                break;
+            };
             texture.value.size.0.clone_from(&size.0);
             at.clone_from(&size.1);
         }
@@ -100,7 +124,12 @@ pub(super) fn sizes_of_others(textures: &mut [(String, Loc<TextureDecl>)], found
             }
             Some(other) => {
                 let message = format!("no texture is named '{}'", other.value);
-                found.unknown(other.at, &other.value, message, sizes.iter().map(|s| s.0.as_str()));
+                found.unknown(
+                    other.at,
+                    &other.value,
+                    message,
+                    sizes.iter().map(|s| s.0.as_str()),
+                );
             }
             None => {}
         }
@@ -118,36 +147,89 @@ pub(super) fn add_aliases(
     for (name, list) in aliases.0 {
         let last = list.value.len().saturating_sub(1);
         if list.value.is_empty() {
-            found.error(list.at, format!("alias '{}' stands for nothing", name.value));
+            found.error(
+                list.at,
+                format!("alias '{}' stands for nothing", name.value),
+            );
         }
         for (i, case) in list.value.iter().enumerate() {
             match (&case.value.when, i == last) {
                 (Some(when), true) => {
-                    let message = format!("the last case of '{}' has a condition: what if none holds?", name.value);
+                    let message = format!(
+                        "the last case of '{}' has a condition: what if none holds?",
+                        name.value
+                    );
                     found.error(when.at, message);
                 }
                 (None, false) => {
-                    let message = format!("a case of '{}' without `when` hides those behind it", name.value);
+                    let message = format!(
+                        "a case of '{}' without `when` hides those behind it",
+                        name.value
+                    );
                     found.error(case.at, message);
                 }
                 _ => {}
             }
         }
         let cases = list.value.into_iter().map(|case| {
-            let AliasDecl { when, of, mip, format, history, sampler } = case.value;
-            AliasCase { when, bind: Bind { of, mip, format, history, sampler } }
+            let AliasDecl {
+                when,
+                of,
+                mip,
+                format,
+                history,
+                sampler,
+            } = case.value;
+            AliasCase {
+                when,
+                bind: Bind {
+                    of,
+                    mip,
+                    format,
+                    history,
+                    sampler,
+                },
+            }
         });
-        new.push(Alias { name: name.value, at: name.at, cases: cases.collect() });
+        new.push(Alias {
+            name: name.value,
+            at: name.at,
+            cases: cases.collect(),
+        });
     }
     for (name, sampler) in samplers.0 {
         if new.iter().any(|a| a.name == name.value) {
-            found.error(name.at, format!("'{}' is an alias and a sampler", name.value));
+            found.error(
+                name.at,
+                format!("'{}' is an alias and a sampler", name.value),
+            );
             continue;
         }
-        let NamedSampler { of, filter, mip_filter, address, compare } = sampler.value;
-        let sampler = Some(SamplerDecl { filter, mip_filter, address, compare });
-        let bind = Bind { of, mip: None, format: None, history: false, sampler };
-        new.push(Alias { name: name.value, at: name.at, cases: vec![AliasCase { when: None, bind }] });
+        let NamedSampler {
+            of,
+            filter,
+            mip_filter,
+            address,
+            compare,
+        } = sampler.value;
+        let sampler = Some(SamplerDecl {
+            filter,
+            mip_filter,
+            address,
+            compare,
+        });
+        let bind = Bind {
+            of,
+            mip: None,
+            format: None,
+            history: false,
+            sampler,
+        };
+        new.push(Alias {
+            name: name.value,
+            at: name.at,
+            cases: vec![AliasCase { when: None, bind }],
+        });
     }
     known.retain(|old| !new.iter().any(|a| a.name == old.name));
     known.extend(new);

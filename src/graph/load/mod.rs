@@ -44,7 +44,14 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
             join::insert_pass(&mut passes, pass, &mut found);
         }
         let parts = more.parts.0.iter().map(|(_, part)| &part.value.0.texture);
-        results.extend(more.output.iter().chain(&more.hdr).chain(&more.outputs.0).chain(parts).cloned());
+        results.extend(
+            more.output
+                .iter()
+                .chain(&more.hdr)
+                .chain(&more.outputs.0)
+                .chain(parts)
+                .cloned(),
+        );
         join::add(&mut file, more);
     }
     join::leave_out_fixed(&mut file);
@@ -55,9 +62,15 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     params::fix(&mut list, &file.fixed, &mut found);
     let pass_names = passes.iter().map(|p| p.value.name.value.clone()).collect();
     let retired = [texts(&retired.parameters), texts(&file.retired)].concat();
-    let params = Params { retired, passes: pass_names, ..Params::new(list) };
+    let params = Params {
+        retired,
+        passes: pass_names,
+        ..Params::new(list)
+    };
     let mut graph = Graph {
-        name: path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned()),
+        name: path
+            .file_stem()
+            .map_or(String::new(), |s| s.to_string_lossy().into_owned()),
         values: values::ordered(file.values.0, &params, &mut found),
         params,
         pinned: texts(&file.pinned),
@@ -78,7 +91,12 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         tables: file.tables.0,
         compare: file.compare.0,
         views: file.views.0,
-        fit: file.fit.0.iter().map(|(name, list)| (name.value.clone(), raw(&list.value))).collect(),
+        fit: file
+            .fit
+            .0
+            .iter()
+            .map(|(name, list)| (name.value.clone(), raw(&list.value)))
+            .collect(),
         ablation: file.ablation.0,
         tools: by_name(file.tools),
         // They are needed for messages until the end.
@@ -87,7 +105,13 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     let mut check = Check::new(&graph, folders, found);
     check.names();
     check.pinned(&file.pinned);
-    check.exprs(graph.params.list.iter().flat_map(|p| p.when.iter().chain(&p.effective)));
+    check.exprs(
+        graph
+            .params
+            .list
+            .iter()
+            .flat_map(|p| p.when.iter().chain(&p.effective)),
+    );
     check.modules(&file.modules);
     check.named_values();
     check.textures();
@@ -103,7 +127,10 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         check.side(&compare.value.b);
     }
     for (name, list) in &file.fit.0 {
-        list.value.0.iter().for_each(|value| check.setting(name, value));
+        list.value
+            .0
+            .iter()
+            .for_each(|value| check.setting(name, value));
     }
     for view in graph.views.iter().chain(&graph.ablation) {
         check.settings(&view.value.set);
@@ -123,7 +150,11 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     }
     check.tables(&graph.tables);
     check.exprs(graph.scene_expressions());
-    let Findings { sources, mut errors, .. } = check.found;
+    let Findings {
+        sources,
+        mut errors,
+        ..
+    } = check.found;
     graph.sources = sources;
     if errors.iter().any(|e| e.severity == Severity::Error) {
         errors.sort_by(|a, b| a.place.cmp(&b.place));
@@ -143,7 +174,10 @@ impl Graph {
 }
 
 fn texts(list: &Entries<String>) -> Vec<(String, String)> {
-    list.0.iter().map(|(name, text)| (name.value.clone(), text.value.clone())).collect()
+    list.0
+        .iter()
+        .map(|(name, text)| (name.value.clone(), text.value.clone()))
+        .collect()
 }
 
 fn raw(list: &Items<RawText>) -> Vec<String> {
@@ -152,10 +186,29 @@ fn raw(list: &Items<RawText>) -> Vec<String> {
 
 /// By name, each with its name's place.
 fn by_name<T>(list: Entries<T>) -> Vec<(String, Loc<T>)> {
-    list.0.into_iter().map(|(name, item)| (name.value, Loc { at: name.at, value: item.value })).collect()
+    list.0
+        .into_iter()
+        .map(|(name, item)| {
+            (
+                name.value,
+                Loc {
+                    at: name.at,
+                    value: item.value,
+                },
+            )
+        })
+        .collect()
 }
 
-fn part((name, Loc { value: PartItem(part), .. }): (Loc<String>, Loc<PartItem>)) -> LightPart {
+fn part(
+    (
+        name,
+        Loc {
+            value: PartItem(part),
+            ..
+        },
+    ): (Loc<String>, Loc<PartItem>),
+) -> LightPart {
     LightPart {
         texture: part.texture.value,
         kind: part.kind,

@@ -40,23 +40,34 @@ const IDENTIFIER: &str = "letters, digits and underscores, starting with a lower
 pub(super) fn declared(decls: &[Loc<Decl>], found: &mut Findings) -> Vec<Param> {
     let mut list: Vec<Param> = Vec::new();
     for Loc { value: decl, at } in decls {
-        let Loc { value: name, at: named_at } = &decl.name;
+        let Loc {
+            value: name,
+            at: named_at,
+        } = &decl.name;
         if !is_identifier(name) {
             let message = format!("'{name}' cannot be a parameter's name");
             found.help(*named_at, message, Some(IDENTIFIER.into()));
         } else if list.iter().any(|p| p.name == *name) {
             found.error(*named_at, format!("parameter '{name}' is declared twice"));
         } else if name == OFF {
-            found.error(*named_at, format!("'{OFF}' is what passes are left out by: no parameter has that name"));
+            found.error(
+                *named_at,
+                format!("'{OFF}' is what passes are left out by: no parameter has that name"),
+            );
         } else if BUILTIN_VARIABLES.contains(&name.as_str()) {
-            found.error(*named_at, format!("'{name}' is a variable that every graph has"));
+            found.error(
+                *named_at,
+                format!("'{name}' is a variable that every graph has"),
+            );
         } else {
             match &decl.param {
                 Ok(param) => list.push(param.clone()),
                 Err(message) => {
                     found.error(*at, message);
                     found.broken.push(name.clone());
-                    found.broken.extend(decl.options.iter().map(|o| o.value.clone()));
+                    found
+                        .broken
+                        .extend(decl.options.iter().map(|o| o.value.clone()));
                 }
             }
         }
@@ -66,8 +77,14 @@ pub(super) fn declared(decls: &[Loc<Decl>], found: &mut Findings) -> Vec<Param> 
             if options[..i].iter().any(|o| o.value == *option) {
                 found.error(*at, format!("option '{option}' stands twice"));
             } else if !is_identifier(option) {
-                found.help(*at, format!("'{option}' cannot be an option's name"), Some(IDENTIFIER.into()));
-            } else if list.iter().any(|p| p.name == *option) || BUILTIN_VARIABLES.contains(&option.as_str()) {
+                found.help(
+                    *at,
+                    format!("'{option}' cannot be an option's name"),
+                    Some(IDENTIFIER.into()),
+                );
+            } else if list.iter().any(|p| p.name == *option)
+                || BUILTIN_VARIABLES.contains(&option.as_str())
+            {
                 let has = "has the name of a parameter or variable, which expressions could not tell apart";
                 found.error(*at, format!("option '{option}' {has}"));
             }
@@ -99,7 +116,12 @@ pub(super) fn set_defaults(list: &mut [Param], defaults: &Entries<RawText>, foun
             },
             None => {
                 let message = format!("no parameter '{}' to give a default to", name.value);
-                found.unknown(name.at, &name.value, message, list.iter().map(|p| p.name.as_str()));
+                found.unknown(
+                    name.at,
+                    &name.value,
+                    message,
+                    list.iter().map(|p| p.name.as_str()),
+                );
             }
         }
     }

@@ -9,15 +9,32 @@ use crate::graph::file::ValueDecl;
 use crate::graph::param::Params;
 
 /// The declared values, each after those that it reads. Names of those that are left out for a mistake go to `broken`.
-pub(super) fn ordered(decls: Vec<(Loc<String>, Loc<ValueDecl>)>, params: &Params, found: &mut Findings) -> Vec<Named> {
+pub(super) fn ordered(
+    decls: Vec<(Loc<String>, Loc<ValueDecl>)>,
+    params: &Params,
+    found: &mut Findings,
+) -> Vec<Named> {
     let mut open: Vec<Named> = Vec::new();
     for (name, decl) in decls {
         let (whole, expr, signs) = match decl.value {
             ValueDecl::Float(ex) => (false, ex, None),
             ValueDecl::Int(ex) => (true, ex, None),
-            ValueDecl::Signature(stage) => (true, Loc { value: Expr::new("0"), at: stage.at }, Some(stage.value)),
+            ValueDecl::Signature(stage) => (
+                true,
+                Loc {
+                    value: Expr::new("0"),
+                    at: stage.at,
+                },
+                Some(stage.value),
+            ),
         };
-        let named = Named { name: name.value, at: name.at, whole, expr, signs };
+        let named = Named {
+            name: name.value,
+            at: name.at,
+            whole,
+            expr,
+            signs,
+        };
         if let Some(message) = name_mistake(&named.name, params, &open) {
             found.error(named.at, message);
             found.broken.push(named.name);
@@ -33,8 +50,15 @@ pub(super) fn ordered(decls: Vec<(Loc<String>, Loc<ValueDecl>)>, params: &Params
             // All that is left reads something that is left: each is in a circle or needs one.
             for value in &later {
                 if let Some(names) = circle(value, &later) {
-                    let way = if names.len() > 2 { format!(": {}", names.join(" needs ")) } else { String::new() };
-                    found.error(value.expr.at, format!("value '{}' needs itself{way}", value.name));
+                    let way = if names.len() > 2 {
+                        format!(": {}", names.join(" needs "))
+                    } else {
+                        String::new()
+                    };
+                    found.error(
+                        value.expr.at,
+                        format!("value '{}' needs itself{way}", value.name),
+                    );
                 }
                 found.broken.push(value.name.clone());
             }
@@ -52,16 +76,25 @@ fn name_mistake(name: &str, params: &Params, others: &[Named]) -> Option<String>
             "'{name}' cannot be a value's name: letters, digits and underscores, starting with a lower-case letter"
         ));
     }
-    if params.list.iter().any(|p| p.name == name || p.variables().iter().any(|v| v == name)) {
+    if params
+        .list
+        .iter()
+        .any(|p| p.name == name || p.variables().iter().any(|v| v == name))
+    {
         return Some(format!("value '{name}' has the name of a parameter"));
     }
     if params.option_names().any(|o| o == name) {
-        return Some(format!("value '{name}' has the name of an option, which expressions could not tell apart"));
+        return Some(format!(
+            "value '{name}' has the name of an option, which expressions could not tell apart"
+        ));
     }
     if BUILTIN_VARIABLES.contains(&name) {
         return Some(format!("'{name}' is a variable that every graph has"));
     }
-    others.iter().any(|o| o.name == name).then(|| format!("value '{name}' is declared twice"))
+    others
+        .iter()
+        .any(|o| o.name == name)
+        .then(|| format!("value '{name}' is declared twice"))
 }
 
 /// The shortest way from a value back to itself.
@@ -73,7 +106,13 @@ fn circle(value: &Named, all: &[Named]) -> Option<Vec<String>> {
         for way in ways {
             let Some(last) = way.last() else { continue };
             if last.reads(&value.name) {
-                return Some(way.iter().map(|v| &v.name).chain([&value.name]).map(|n| format!("'{n}'")).collect());
+                return Some(
+                    way.iter()
+                        .map(|v| &v.name)
+                        .chain([&value.name])
+                        .map(|n| format!("'{n}'"))
+                        .collect(),
+                );
             }
             for next in all.iter().filter(|v| last.reads(&v.name)) {
                 if !seen.contains(&next.name.as_str()) {

@@ -124,30 +124,46 @@ impl Fields<String> {
         let names: Vec<String> = self.options.iter().map(|o| o.value.clone()).collect();
         let Some(first) = names.first().cloned() else {
             let param = Err(format!("choice '{}' has no options", self.name.value));
-            return Decl { name: self.name, options: self.options, param };
+            return Decl {
+                name: self.name,
+                options: self.options,
+                param,
+            };
         };
         self.default.get_or_insert(first);
         let decl = self.decl(Kind::Choice(names), Value::Choice);
-        Decl { param: decl.param.map(|param| Param { files, ..param }), ..decl }
+        Decl {
+            param: decl.param.map(|param| Param { files, ..param }),
+            ..decl
+        }
     }
 }
 
 impl<T> Fields<T> {
     fn decl(self, kind: Kind, value: impl Fn(T) -> Value) -> Decl {
         let (name, options) = (self.name.clone(), self.options.clone());
-        Decl { name, options, param: self.param(kind, value) }
+        Decl {
+            name,
+            options,
+            param: self.param(kind, value),
+        }
     }
 
     fn param(self, kind: Kind, value: impl Fn(T) -> Value) -> Result<Param, String> {
         let Loc { value: name, at } = self.name;
-        let default = self.default.map(&value).ok_or(format!("parameter '{name}' has no default"))?;
+        let default = self
+            .default
+            .map(&value)
+            .ok_or(format!("parameter '{name}' has no default"))?;
         if self.help.trim().is_empty() || self.help.contains('\n') {
             return Err(format!("parameter '{name}' needs one line of help"));
         }
         if let Some((low, high)) = self.range
             && (low >= high || low.is_nan() || high.is_nan())
         {
-            return Err(format!("parameter '{name}': its range goes from {low} to {high}, which holds nothing"));
+            return Err(format!(
+                "parameter '{name}': its range goes from {low} to {high}, which holds nothing"
+            ));
         }
         if self.constant && kind.components() > 0 {
             return Err(format!("parameter '{name}': a vector cannot be a constant"));
@@ -172,22 +188,45 @@ impl<T> Fields<T> {
             files: Vec::new(),
             fixed: false,
         };
-        param.check(&param.default).map_err(|e| format!("default of {e}"))?;
-        param.plain.iter().try_for_each(|v| param.check(v)).map_err(|e| format!("plain value of {e}"))?;
+        param
+            .check(&param.default)
+            .map_err(|e| format!("default of {e}"))?;
+        param
+            .plain
+            .iter()
+            .try_for_each(|v| param.check(v))
+            .map_err(|e| format!("plain value of {e}"))?;
         Ok(param)
     }
 }
 
 /// The line of help of each option, in the order of the options; empty for one without.
-fn option_help(name: &str, options: &[String], help: Option<Entries<String>>) -> Result<Vec<String>, String> {
-    let Some(Entries(list)) = help else { return Ok(Vec::new()) };
-    if let Some((other, _)) = list.iter().find(|(option, _)| !options.contains(&option.value)) {
-        return Err(format!("choice '{name}' has help for '{}', which is none of its options", other.value));
+fn option_help(
+    name: &str,
+    options: &[String],
+    help: Option<Entries<String>>,
+) -> Result<Vec<String>, String> {
+    let Some(Entries(list)) = help else {
+        return Ok(Vec::new());
+    };
+    if let Some((other, _)) = list
+        .iter()
+        .find(|(option, _)| !options.contains(&option.value))
+    {
+        return Err(format!(
+            "choice '{name}' has help for '{}', which is none of its options",
+            other.value
+        ));
     }
     let line = |option: &String| {
-        let text = list.iter().find(|(of, _)| of.value == *option).map_or("", |(_, text)| text.value.as_str());
+        let text = list
+            .iter()
+            .find(|(of, _)| of.value == *option)
+            .map_or("", |(_, text)| text.value.as_str());
         match text.contains('\n') {
-            true => Err(format!("choice '{name}' has more than one line of help for '{option}'")),
+            true => Err(format!(
+                "choice '{name}' has more than one line of help for '{option}'"
+            )),
             false => Ok(text.to_string()),
         }
     };

@@ -159,13 +159,21 @@ impl Param {
     pub fn variables(&self) -> Vec<String> {
         match self.kind.components() {
             0 => vec![self.name.clone()],
-            n => ["x", "y", "z", "w"].iter().take(n).map(|c| format!("{}_{c}", self.name)).collect(),
+            n => ["x", "y", "z", "w"]
+                .iter()
+                .take(n)
+                .map(|c| format!("{}_{c}", self.name))
+                .collect(),
         }
     }
 
     /// How shaders name it, where it stands in them itself: a constant, or a member of the uniform block.
     pub fn in_shaders(&self) -> String {
-        if self.constant { self.name.to_uppercase() } else { format!("params.{}", self.name) }
+        if self.constant {
+            self.name.to_uppercase()
+        } else {
+            format!("params.{}", self.name)
+        }
     }
 
     /// Gives its variables a value. The numbers of a choice's options are among the variables already.
@@ -179,7 +187,11 @@ impl Param {
                 None => return,
             },
             Value::Vector(v) => {
-                return env.extend(self.variables().into_iter().zip(v.iter().map(|x| Var::Number(*x))));
+                return env.extend(
+                    self.variables()
+                        .into_iter()
+                        .zip(v.iter().map(|x| Var::Number(*x))),
+                );
             }
         };
         env.insert(self.name.clone(), var);
@@ -200,7 +212,9 @@ impl Param {
                 vec![*v as f64]
             }
             (Kind::Float, Value::Float(v)) => vec![*v],
-            (kind, Value::Vector(v)) if kind.components() > 0 && v.len() == kind.components() => v.clone(),
+            (kind, Value::Vector(v)) if kind.components() > 0 && v.len() == kind.components() => {
+                v.clone()
+            }
             (Kind::Choice(options), Value::Choice(v)) => {
                 if !options.contains(v) {
                     let hint = nearest(v, options.iter().map(String::as_str)).unwrap_or_default();
@@ -208,7 +222,12 @@ impl Param {
                 }
                 vec![]
             }
-            _ => return Err(format!("'{name}': expected {}, got {value}", self.expected())),
+            _ => {
+                return Err(format!(
+                    "'{name}': expected {}, got {value}",
+                    self.expected()
+                ));
+            }
         };
         if let Some(bad) = numbers.iter().find(|v| !v.is_finite()) {
             return Err(format!("'{name}': {bad} is not a finite number"));
@@ -243,15 +262,28 @@ impl Param {
             Kind::Bool => ron.from_str(text).map(Value::Bool),
             Kind::Int => ron.from_str(text).map(Value::Int),
             Kind::Float => ron.from_str(text).map(Value::Float),
-            Kind::Vector(2) => ron.from_str::<[f64; 2]>(text).map(|v| Value::Vector(v.to_vec())),
-            Kind::Vector(4) => ron.from_str::<[f64; 4]>(text).map(|v| Value::Vector(v.to_vec())),
-            Kind::Vector(_) | Kind::Colour => ron.from_str::<[f64; 3]>(text).map(|v| Value::Vector(v.to_vec())),
-            Kind::Choice(_) => Ok(Value::Choice(ron.from_str::<String>(text).unwrap_or_else(|_| text.to_string()))),
+            Kind::Vector(2) => ron
+                .from_str::<[f64; 2]>(text)
+                .map(|v| Value::Vector(v.to_vec())),
+            Kind::Vector(4) => ron
+                .from_str::<[f64; 4]>(text)
+                .map(|v| Value::Vector(v.to_vec())),
+            Kind::Vector(_) | Kind::Colour => ron
+                .from_str::<[f64; 3]>(text)
+                .map(|v| Value::Vector(v.to_vec())),
+            Kind::Choice(_) => Ok(Value::Choice(
+                ron.from_str::<String>(text)
+                    .unwrap_or_else(|_| text.to_string()),
+            )),
         };
-        let value = value.map_err(|_| format!("'{}': expected {}, got {text}", self.name, self.expected()))?;
+        let value = value
+            .map_err(|_| format!("'{}': expected {}, got {text}", self.name, self.expected()))?;
         self.check(&value)?;
         if self.fixed && value != self.default {
-            return Err(format!("'{}' is fixed at {} in this graph", self.name, self.default));
+            return Err(format!(
+                "'{}' is fixed at {} in this graph",
+                self.name, self.default
+            ));
         }
         Ok(value)
     }

@@ -27,7 +27,11 @@ impl Params {
     /// All at their defaults.
     pub fn new(list: Vec<Param>) -> Params {
         let values = list.iter().map(|p| p.default.clone()).collect();
-        Params { list, values, ..Params::default() }
+        Params {
+            list,
+            values,
+            ..Params::default()
+        }
     }
 
     /// Those that may be set.
@@ -43,14 +47,19 @@ impl Params {
     /// The module files in use: name of the module, file of its option.
     pub fn modules(&self) -> impl Iterator<Item = (&str, &str)> {
         self.pairs().filter_map(|(param, value)| {
-            let Value::Choice(option) = value else { return None };
+            let Value::Choice(option) = value else {
+                return None;
+            };
             let number = param.kind.options().iter().position(|o| o == option)?;
             Some((param.name.as_str(), param.files.get(number)?.as_str()))
         })
     }
 
     fn instead(&self, name: &str) -> Option<&str> {
-        self.retired.iter().find(|(retired, _)| retired == name).map(|(_, instead)| instead.as_str())
+        self.retired
+            .iter()
+            .find(|(retired, _)| retired == name)
+            .map(|(_, instead)| instead.as_str())
     }
 
     /// Number of a parameter.
@@ -90,27 +99,43 @@ impl Params {
             return Err(format!("no parameter '{name}'{hint}"));
         };
         let instead = self.instead(&format!("{name}={}", text.trim().trim_matches('"')));
-        self.values[i] = self.list[i].parse(text).map_err(|e| instead.map_or(e.clone(), |i| format!("{e}: {i}")))?;
+        self.values[i] = self.list[i]
+            .parse(text)
+            .map_err(|e| instead.map_or(e.clone(), |i| format!("{e}: {i}")))?;
         Ok(())
     }
 
     /// The passes that a list in RON names, in the graph's order.
     fn passes_of(&self, text: &str) -> Result<Vec<String>, String> {
-        let wrong =
-            |_| format!("'{OFF}': expected a list of passes, as [\"{}\"]", self.passes.first().map_or("", |p| p));
+        let wrong = |_| {
+            format!(
+                "'{OFF}': expected a list of passes, as [\"{}\"]",
+                self.passes.first().map_or("", |p| p)
+            )
+        };
         let named: Vec<String> = options().from_str(text.trim()).map_err(wrong)?;
         let unknown = |name: &&String| !self.passes.contains(name);
         if let Some(unknown) = named.iter().find(unknown) {
             let hint = nearest(unknown, self.passes.iter().map(String::as_str));
-            return Err(format!("'{OFF}': no pass '{unknown}'{}", hint.map_or(String::new(), |h| format!(" ({h})"))));
+            return Err(format!(
+                "'{OFF}': no pass '{unknown}'{}",
+                hint.map_or(String::new(), |h| format!(" ({h})"))
+            ));
         }
-        Ok(self.passes.iter().filter(|p| named.contains(p)).cloned().collect())
+        Ok(self
+            .passes
+            .iter()
+            .filter(|p| named.contains(p))
+            .cloned()
+            .collect())
     }
 
     /// All that is set, by name and as RON: the parameters, and the passes left out where there are some.
     pub fn texts(&self) -> impl Iterator<Item = (String, String)> {
         let off = (!self.off.is_empty()).then(|| (OFF.to_string(), format!("{:?}", self.off)));
-        self.pairs().map(|(param, value)| (param.name.clone(), value.to_ron())).chain(off)
+        self.pairs()
+            .map(|(param, value)| (param.name.clone(), value.to_ron()))
+            .chain(off)
     }
 
     /// Adds the values as expression variables; options of choices become numbers that compare equal by name.
@@ -118,13 +143,21 @@ impl Params {
         let mut options: Vec<&str> = self.option_names().collect();
         options.sort_unstable();
         options.dedup();
-        env.extend((1000u32..).zip(options).map(|(number, name)| (name.into(), Var::Number(number.into()))));
-        self.pairs().for_each(|(param, value)| param.put(value, env));
+        env.extend(
+            (1000u32..)
+                .zip(options)
+                .map(|(number, name)| (name.into(), Var::Number(number.into()))),
+        );
+        self.pairs()
+            .for_each(|(param, value)| param.put(value, env));
     }
 
     /// Names of all options of all choices.
     pub fn option_names(&self) -> impl Iterator<Item = &str> {
-        self.list.iter().flat_map(|p| p.kind.options()).map(String::as_str)
+        self.list
+            .iter()
+            .flat_map(|p| p.kind.options())
+            .map(String::as_str)
     }
 
     /// The generated include `params.glsl`: a uniform block that ends with these members, specialisation constants, names
@@ -133,7 +166,12 @@ impl Params {
         let (mut members, mut rest) = (String::new(), String::new());
         for (id, param) in self.list.iter().enumerate().filter(|(_, p)| !p.is_module()) {
             let upper = param.name.to_uppercase();
-            let first = param.default.words(&param.kind).first().copied().unwrap_or(0);
+            let first = param
+                .default
+                .words(&param.kind)
+                .first()
+                .copied()
+                .unwrap_or(0);
             // Vectors are no constants.
             let (ty, constant) = match &param.kind {
                 Kind::Bool => ("bool", (first != 0).to_string()),
@@ -144,7 +182,10 @@ impl Params {
                 Kind::Vector(_) | Kind::Colour => ("vec3", String::new()),
             };
             let _ = match param.constant {
-                true => writeln!(rest, "layout(constant_id = {id}) const {ty} {upper} = {constant};"),
+                true => writeln!(
+                    rest,
+                    "layout(constant_id = {id}) const {ty} {upper} = {constant};"
+                ),
                 false => writeln!(members, "    {ty} {};", param.name),
             };
             for (i, option) in param.kind.options().iter().enumerate() {
@@ -174,7 +215,12 @@ impl Params {
             bytes.resize(bytes.len().next_multiple_of(align), 0);
             bytes.extend(words.iter().flat_map(|w| w.to_ne_bytes()));
         }
-        bytes.extend(values.iter().flat_map(|v| v.words(&Kind::Float)).flat_map(u32::to_ne_bytes));
+        bytes.extend(
+            values
+                .iter()
+                .flat_map(|v| v.words(&Kind::Float))
+                .flat_map(u32::to_ne_bytes),
+        );
         bytes.resize(bytes.len().next_multiple_of(16).max(16), 0);
         bytes
     }
@@ -182,6 +228,10 @@ impl Params {
     /// Specialisation constants: (id, value).
     pub fn constants(&self) -> Vec<(u32, u32)> {
         let words = |(p, v): (&Param, &Value)| v.words(&p.kind).first().copied().unwrap_or(0);
-        (0u32..).zip(self.pairs()).filter(|(_, pair)| pair.0.constant).map(|(id, pair)| (id, words(pair))).collect()
+        (0u32..)
+            .zip(self.pairs())
+            .filter(|(_, pair)| pair.0.constant)
+            .map(|(id, pair)| (id, words(pair)))
+            .collect()
     }
 }

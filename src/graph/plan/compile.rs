@@ -44,9 +44,19 @@ pub fn plan(
     // What passes write that are left out.
     let mut missing: Vec<Res> = Vec::new();
     let mut instead: Vec<(usize, usize)> = Vec::new();
-    let mut planner = Planner { numbers, layouts, device, textures: &textures, buffers: &buffers };
+    let mut planner = Planner {
+        numbers,
+        layouts,
+        device,
+        textures: &textures,
+        buffers: &buffers,
+    };
     for (number, (pass, link)) in graph.passes.iter().zip(linked).enumerate() {
-        if let Some(when) = pass.value.conditions().find(|when| !planner.numbers.holds(when)) {
+        if let Some(when) = pass
+            .value
+            .conditions()
+            .find(|when| !planner.numbers.holds(when))
+        {
             dropped.push((number, format!("{} is false", when.value.text)));
             continue;
         }
@@ -56,7 +66,11 @@ pub fn plan(
             missing.extend(uses.filter(|u| u.write).map(|u| u.res));
             let texture = |name: &str| graph.texture(name);
             let pairs = pass.value.instead.0.iter();
-            instead.extend(pairs.filter_map(|(of, read)| Some((texture(&of.value)?, texture(&read.value.value)?))));
+            instead.extend(
+                pairs.filter_map(|(of, read)| {
+                    Some((texture(&of.value)?, texture(&read.value.value)?))
+                }),
+            );
             dropped.push((number, "it is off".into()));
             continue;
         }
@@ -78,7 +92,9 @@ pub fn plan(
             Res::Texture(t, _) => textures[t].transient = false,
             Res::Buffer(b, _) => buffers[b].transient = false,
         }
-        numbers.errors.extend(nobody_writes(set, wanted, &steps, *res));
+        numbers
+            .errors
+            .extend(nobody_writes(set, wanted, &steps, *res));
     }
     written_anew(&textures, &buffers, &mut steps);
     let max_edge = max_edge(&mut numbers);
@@ -86,7 +102,17 @@ pub fn plan(
         return Err(numbers.errors);
     }
     let (settling, convergence, transients) = (Vec::new(), Convergence::default(), Vec::new());
-    let mut plan = Plan { textures, buffers, steps, settling, convergence, transients, missing, dropped, max_edge };
+    let mut plan = Plan {
+        textures,
+        buffers,
+        steps,
+        settling,
+        convergence,
+        transients,
+        missing,
+        dropped,
+        max_edge,
+    };
     let mut errors = Vec::new();
     live::prune(graph, linked, &mut plan, wanted);
     layout::layouts(graph, &mut plan, &mut errors);
@@ -100,22 +126,44 @@ pub fn plan(
         Err(found) => errors.extend(found),
     }
     errors.extend(needs::check(set, linked, &plan, device));
-    if errors.is_empty() { Ok(plan) } else { Err(errors) }
+    if errors.is_empty() {
+        Ok(plan)
+    } else {
+        Err(errors)
+    }
 }
 
 /// What passes that are off would have begun anew holds zeros in their place, and the picture has to come from somewhere.
-fn nobody_writes(set: &Evaluated<'_>, wanted: &[String], steps: &[Step], res: Res) -> Option<Diagnostic> {
+fn nobody_writes(
+    set: &Evaluated<'_>,
+    wanted: &[String],
+    steps: &[Step],
+    res: Res,
+) -> Option<Diagnostic> {
     let name = set.graph.title_of(res);
-    let written = steps.iter().flat_map(|s| &s.uses).any(|u| u.write && u.res == res);
+    let written = steps
+        .iter()
+        .flat_map(|s| &s.uses)
+        .any(|u| u.write && u.res == res);
     (!written && wanted.contains(&name)).then(|| {
         let off = set.params.off.join(", ");
-        Diagnostic::error(Place::default(), format!("nothing writes '{name}' when these passes are off: {off}"))
+        Diagnostic::error(
+            Place::default(),
+            format!("nothing writes '{name}' when these passes are off: {off}"),
+        )
     })
 }
 
 /// Has steps read one texture in place of another, if it can be bound where that one is.
 fn read_instead(textures: &[TexturePlan], steps: &mut [Step], of: usize, read: usize) {
-    let shape = |t: usize| (textures[t].extent, textures[t].layers, textures[t].mips, textures[t].format.name);
+    let shape = |t: usize| {
+        (
+            textures[t].extent,
+            textures[t].layers,
+            textures[t].mips,
+            textures[t].format.name,
+        )
+    };
     if shape(of) != shape(read) || textures[of].volume != textures[read].volume {
         return;
     }
@@ -126,7 +174,11 @@ fn read_instead(textures: &[TexturePlan], steps: &mut [Step], of: usize, read: u
         if step.uses.iter().any(|u| u.res == of && !plain(u)) {
             continue;
         }
-        for binding in step.bindings.iter_mut().filter(|b| Res::Texture(b.texture, b.history) == of) {
+        for binding in step
+            .bindings
+            .iter_mut()
+            .filter(|b| Res::Texture(b.texture, b.history) == of)
+        {
             binding.texture = by;
         }
         for u in step.uses.iter_mut().filter(|u| u.res == of) {
@@ -141,11 +193,20 @@ fn read_instead(textures: &[TexturePlan], steps: &mut [Step], of: usize, read: u
 fn written_anew(textures: &[TexturePlan], buffers: &[BufferPlan], steps: &mut [Step]) {
     let begun = (0..buffers.len()).filter(|b| buffers[*b].history || buffers[*b].transient);
     let buffers = begun.map(|b| (Res::Buffer(b, false), 0));
-    let kept = textures.iter().enumerate().filter(|(_, texture)| texture.history || texture.transient);
-    let mips = kept.flat_map(|(t, texture)| (0..texture.mips).map(move |mip| (Res::Texture(t, false), mip)));
+    let kept = textures
+        .iter()
+        .enumerate()
+        .filter(|(_, texture)| texture.history || texture.transient);
+    let mips = kept
+        .flat_map(|(t, texture)| (0..texture.mips).map(move |mip| (Res::Texture(t, false), mip)));
     for (res, mip) in buffers.chain(mips) {
         let this = |u: &&mut Use| u.res == res && u.mips == (mip, 1);
-        if let Some(first) = steps.iter_mut().flat_map(|s| &mut s.uses).filter(this).find(|u| u.write) {
+        if let Some(first) = steps
+            .iter_mut()
+            .flat_map(|s| &mut s.uses)
+            .filter(this)
+            .find(|u| u.write)
+        {
             first.overwrite |= !first.read;
         }
     }
@@ -159,7 +220,10 @@ fn max_edge(numbers: &mut Numbers<'_>) -> Option<f64> {
     }
     let edge = numbers.value(&needs.max_edge);
     if edge <= 0.0 && numbers.errors.is_empty() {
-        numbers.error(needs.max_edge.at, format!("max_edge '{}' is {edge} m", needs.max_edge.value.text));
+        numbers.error(
+            needs.max_edge.at,
+            format!("max_edge '{}' is {edge} m", needs.max_edge.value.text),
+        );
     }
     Some(edge)
 }

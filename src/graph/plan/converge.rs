@@ -17,7 +17,11 @@ pub(super) fn frames(plan: &Plan, settles: &Declared, converges: &Declared) -> C
     let (mut fresh, mut changed, mut undeclared) = (BTreeMap::new(), BTreeMap::new(), 1);
     for step in &plan.steps {
         let (rests, ends) = (settles.get(&step.pass), converges.get(&step.pass));
-        let reads_history = || step.uses.iter().any(|u| matches!(u.res, Res::Texture(_, true)));
+        let reads_history = || {
+            step.uses
+                .iter()
+                .any(|u| matches!(u.res, Res::Texture(_, true)))
+        };
         match (ends.or(rests), rests.or(ends)) {
             (Some(first), Some(later)) => {
                 fresh.insert(first.0, first.1);
@@ -27,6 +31,14 @@ pub(super) fn frames(plan: &Plan, settles: &Declared, converges: &Declared) -> C
             _ => {}
         }
     }
-    let sum = |groups: BTreeMap<At, u32>| groups.into_values().fold(0, u32::saturating_add).max(undeclared);
-    Convergence { fresh: sum(fresh), changed: sum(changed) }
+    let sum = |groups: BTreeMap<At, u32>| {
+        groups
+            .into_values()
+            .fold(0, u32::saturating_add)
+            .max(undeclared)
+    };
+    Convergence {
+        fresh: sum(fresh),
+        changed: sum(changed),
+    }
 }

@@ -34,7 +34,11 @@ impl TexturePlan {
 
     /// Bytes of one layer of a mip, tightly packed.
     pub fn mip_bytes(&self, mip: u32) -> u64 {
-        self.mip_extent(mip).into_iter().map(u64::from).product::<u64>() * u64::from(self.format.bytes)
+        self.mip_extent(mip)
+            .into_iter()
+            .map(u64::from)
+            .product::<u64>()
+            * u64::from(self.format.bytes)
     }
 
     /// Bytes of all copies.
@@ -222,9 +226,15 @@ impl Plan {
 
     /// Textures and buffers that are made, in the graph's order.
     pub fn made(&self) -> impl Iterator<Item = Res> {
-        let textures = self.textures.iter().enumerate().filter(|(_, t)| !t.usage.is_empty());
+        let textures = self
+            .textures
+            .iter()
+            .enumerate()
+            .filter(|(_, t)| !t.usage.is_empty());
         let buffers = self.buffers.iter().enumerate().filter(|(_, b)| b.used);
-        textures.map(|(t, _)| Res::Texture(t, false)).chain(buffers.map(|(b, _)| Res::Buffer(b, false)))
+        textures
+            .map(|(t, _)| Res::Texture(t, false))
+            .chain(buffers.map(|(b, _)| Res::Buffer(b, false)))
     }
 
     /// Whether a resource holds nothing between frames.

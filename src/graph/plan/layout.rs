@@ -12,7 +12,12 @@ use crate::vulkan::vk::{self, ImageLayout as Layout};
 /// between dispatches buys nothing on the devices known to us.
 pub fn layouts(graph: &Graph, plan: &mut Plan, errors: &mut Vec<Diagnostic>) {
     let mut stored = vec![false; plan.textures.len()];
-    for u in plan.steps.iter().flat_map(|s| &s.uses).filter(|u| u.kind == UseKind::Storage) {
+    for u in plan
+        .steps
+        .iter()
+        .flat_map(|s| &s.uses)
+        .filter(|u| u.kind == UseKind::Storage)
+    {
         if let Res::Texture(t, _) = u.res {
             stored[t] = true;
         }
@@ -29,20 +34,40 @@ pub fn layouts(graph: &Graph, plan: &mut Plan, errors: &mut Vec<Diagnostic>) {
             let (layout, usage) = match u.kind {
                 UseKind::Storage => (Layout::GENERAL, vk::ImageUsageFlags::STORAGE),
                 UseKind::Sampled if stored[t] => (Layout::GENERAL, vk::ImageUsageFlags::SAMPLED),
-                UseKind::Color => (Layout::COLOR_ATTACHMENT_OPTIMAL, vk::ImageUsageFlags::COLOR_ATTACHMENT),
-                UseKind::Depth => (Layout::DEPTH_ATTACHMENT_OPTIMAL, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT),
-                UseKind::DepthRead => (Layout::DEPTH_READ_ONLY_OPTIMAL, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT),
+                UseKind::Color => (
+                    Layout::COLOR_ATTACHMENT_OPTIMAL,
+                    vk::ImageUsageFlags::COLOR_ATTACHMENT,
+                ),
+                UseKind::Depth => (
+                    Layout::DEPTH_ATTACHMENT_OPTIMAL,
+                    vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
+                ),
+                UseKind::DepthRead => (
+                    Layout::DEPTH_READ_ONLY_OPTIMAL,
+                    vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
+                ),
                 UseKind::Clear if stored[t] => (Layout::GENERAL, vk::ImageUsageFlags::TRANSFER_DST),
-                UseKind::Clear => (Layout::TRANSFER_DST_OPTIMAL, vk::ImageUsageFlags::TRANSFER_DST),
-                _ => (Layout::SHADER_READ_ONLY_OPTIMAL, vk::ImageUsageFlags::SAMPLED),
+                UseKind::Clear => (
+                    Layout::TRANSFER_DST_OPTIMAL,
+                    vk::ImageUsageFlags::TRANSFER_DST,
+                ),
+                _ => (
+                    Layout::SHADER_READ_ONLY_OPTIMAL,
+                    vk::ImageUsageFlags::SAMPLED,
+                ),
             };
             u.layout = layout;
             // Every texture can be cleared at creation and read back.
-            plan.textures[t].usage |= usage | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
+            plan.textures[t].usage |=
+                usage | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
         }
         conflicts(graph, step, errors);
         for binding in &mut step.bindings {
-            binding.layout = if stored[binding.texture] { Layout::GENERAL } else { Layout::SHADER_READ_ONLY_OPTIMAL };
+            binding.layout = if stored[binding.texture] {
+                Layout::GENERAL
+            } else {
+                Layout::SHADER_READ_ONLY_OPTIMAL
+            };
         }
     }
 }

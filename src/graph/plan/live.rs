@@ -14,8 +14,14 @@ use std::collections::BTreeSet;
 pub(super) fn prune(graph: &Graph, linked: &[Linked], plan: &mut Plan, wanted: &[String]) {
     let mut at_end: BTreeSet<Part> = BTreeSet::new();
     for name in wanted {
-        let Some(res) = graph.resource(name) else { continue };
-        let mips = if let Res::Texture(t, _) = res { plan.textures[t].mips } else { 1 };
+        let Some(res) = graph.resource(name) else {
+            continue;
+        };
+        let mips = if let Res::Texture(t, _) = res {
+            plan.textures[t].mips
+        } else {
+            1
+        };
         at_end.extend((0..mips).map(|mip| (res, mip)));
     }
     // What a frame reads before writing it must be right at the end of the frame before: repeat until nothing is added.
@@ -55,7 +61,8 @@ pub(super) fn prune(graph: &Graph, linked: &[Linked], plan: &mut Plan, wanted: &
     plan.steps = steps;
     for pass in unneeded {
         if !plan.steps.iter().any(|s| s.pass == pass) {
-            plan.dropped.push((pass, String::from("nobody needs what it writes")));
+            plan.dropped
+                .push((pass, String::from("nobody needs what it writes")));
         }
     }
     plan.dropped.sort_unstable();
@@ -74,7 +81,10 @@ fn leave_out(link: &Linked, step: &mut Step, image: &Use) {
         if is_stored {
             step.stripped.push(binding.bound);
         }
-        let asked = matches!(link.bound[binding.bound].resource, Resource::Storage { sized: true, .. });
+        let asked = matches!(
+            link.bound[binding.bound].resource,
+            Resource::Storage { sized: true, .. }
+        );
         sized |= is_stored && asked;
         if !is_stored || asked {
             step.bindings.push(binding);
@@ -100,7 +110,10 @@ struct Needed {
 
 /// For each step from the last: `None` when it can go, else what is needed of it; and what must be there at the start,
 /// and as history.
-fn backward(steps: &[Step], at_end: &BTreeSet<Part>) -> (Vec<Option<Needed>>, BTreeSet<Part>, BTreeSet<Part>) {
+fn backward(
+    steps: &[Step],
+    at_end: &BTreeSet<Part>,
+) -> (Vec<Option<Needed>>, BTreeSet<Part>, BTreeSet<Part>) {
     let mut live = at_end.clone();
     let mut history = BTreeSet::new();
     let mut kept: Vec<Option<Needed>> = vec![None; steps.len()];
@@ -113,11 +126,19 @@ fn backward(steps: &[Step], at_end: &BTreeSet<Part>) -> (Vec<Option<Needed>>, BT
         let color: Vec<bool> = step
             .color
             .iter()
-            .map(|slot| slot.as_ref().is_some_and(|t| live.contains(&(Res::Texture(t.texture, false), t.mip))))
+            .map(|slot| {
+                slot.as_ref()
+                    .is_some_and(|t| live.contains(&(Res::Texture(t.texture, false), t.mip)))
+            })
             .collect();
         let dispatch = matches!(step.work, Work::Dispatch(_) | Work::DispatchIndirect(..));
         let only_stored = |u: &Use| dispatch && u.kind == UseKind::Storage && u.write && !u.read;
-        let unneeded_images: Vec<Use> = step.uses.iter().filter(|u| only_stored(u) && for_nobody(u)).cloned().collect();
+        let unneeded_images: Vec<Use> = step
+            .uses
+            .iter()
+            .filter(|u| only_stored(u) && for_nobody(u))
+            .cloned()
+            .collect();
         let unneeded_color = |u: &Use| u.kind == UseKind::Color && for_nobody(u);
         let uses: Vec<&Use> = step.uses.iter().filter(|u| !unneeded_color(u)).collect();
         for u in uses.iter().filter(|u| u.overwrite) {
@@ -126,10 +147,17 @@ fn backward(steps: &[Step], at_end: &BTreeSet<Part>) -> (Vec<Option<Needed>>, BT
             }
         }
         for u in uses.iter().filter(|u| u.read) {
-            let target = if u.res != u.res.current() { &mut history } else { &mut live };
+            let target = if u.res != u.res.current() {
+                &mut history
+            } else {
+                &mut live
+            };
             target.extend(parts(u));
         }
-        kept[i] = Some(Needed { color, unneeded_images });
+        kept[i] = Some(Needed {
+            color,
+            unneeded_images,
+        });
     }
     (kept, live, history)
 }

@@ -17,7 +17,8 @@ mod uses;
 
 pub use compile::plan;
 pub use data::{
-    AttachmentPlan, BindingPlan, BufferPlan, Convergence, Plan, Settling, Step, TexturePlan, Transient, Work,
+    AttachmentPlan, BindingPlan, BufferPlan, Convergence, Plan, Settling, Step, TexturePlan,
+    Transient, Work,
 };
 pub use places::Places;
 pub use schedule::{Barrier, Schedule, schedule};

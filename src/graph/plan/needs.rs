@@ -15,7 +15,12 @@ const INT64: u32 = 11;
 const INT64_ATOMICS: u32 = 12;
 
 /// One error for each feature that a pass of the plan needs and the device lacks.
-pub(super) fn check(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan, device: &DeviceInfo) -> Vec<Diagnostic> {
+pub(super) fn check(
+    set: &Evaluated<'_>,
+    linked: &[Linked],
+    plan: &Plan,
+    device: &DeviceInfo,
+) -> Vec<Diagnostic> {
     let have = &device.features;
     let mut errors = Vec::new();
     for number in plan.passes() {
@@ -28,12 +33,20 @@ pub(super) fn check(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan, device:
                     && (b.stage == Stage::Fragment) == fragment
                     && matches!(
                         b.resource,
-                        Resource::Buffer { write: true, .. } | Resource::Storage { write: true, .. }
+                        Resource::Buffer { write: true, .. }
+                            | Resource::Storage { write: true, .. }
                     )
             })
         };
-        let unformatted = link.bound.iter().any(|b| matches!(b.resource, Resource::Storage { format: None, .. }));
-        let uses = |capability: u32| link.stages.iter().any(|s| s.interface.capabilities.contains(&capability));
+        let unformatted = link
+            .bound
+            .iter()
+            .any(|b| matches!(b.resource, Resource::Storage { format: None, .. }));
+        let uses = |capability: u32| {
+            link.stages
+                .iter()
+                .any(|s| s.interface.capabilities.contains(&capability))
+        };
         let needs = [
             (
                 pass.raster.conservative.is_some(),
@@ -42,12 +55,28 @@ pub(super) fn check(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan, device:
             ),
             (has(Stage::Geometry), have.geometry, "geometry shaders"),
             (has(Stage::TessControl), have.tessellation, "tessellation"),
-            (stores(true), have.fragment_stores, "stores from fragment shaders"),
-            (stores(false), have.vertex_stores, "stores from vertex, tessellation or geometry shaders"),
+            (
+                stores(true),
+                have.fragment_stores,
+                "stores from fragment shaders",
+            ),
+            (
+                stores(false),
+                have.vertex_stores,
+                "stores from vertex, tessellation or geometry shaders",
+            ),
             (pass.raster.depth_clamp, have.depth_clamp, "depth clamping"),
-            (unformatted, have.write_without_format, "writing images without a format"),
+            (
+                unformatted,
+                have.write_without_format,
+                "writing images without a format",
+            ),
             (uses(CLIP_DISTANCE), have.clip_distance, "gl_ClipDistance"),
-            (uses(INT64) || uses(INT64_ATOMICS), have.int64_atomics, "64-bit atomics in buffers"),
+            (
+                uses(INT64) || uses(INT64_ATOMICS),
+                have.int64_atomics,
+                "64-bit atomics in buffers",
+            ),
             // Not asked of any device: portable shaders do without.
             (uses(FLOAT64), false, "64-bit floating point in shaders"),
         ];
@@ -59,14 +88,22 @@ pub(super) fn check(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan, device:
                     device.name,
                     because(pass, set.params)
                 );
-                errors.push(set.graph.sources.error(pass.name.at, message).help(instead(pass, set.params)));
+                errors.push(
+                    set.graph
+                        .sources
+                        .error(pass.name.at, message)
+                        .help(instead(pass, set.params)),
+                );
             }
         }
     }
     errors
 }
 
-fn choices<'p>(pass: &'p PassDecl, params: &'p Params) -> impl Iterator<Item = (&'p str, &'p Value, &'p [String])> {
+fn choices<'p>(
+    pass: &'p PassDecl,
+    params: &'p Params,
+) -> impl Iterator<Item = (&'p str, &'p Value, &'p [String])> {
     let variables = pass.conditions().flat_map(|ex| ex.value.variables());
     variables.filter_map(|v| {
         let i = params.index(v)?;
@@ -76,15 +113,24 @@ fn choices<'p>(pass: &'p PassDecl, params: &'p Params) -> impl Iterator<Item = (
 }
 
 fn because(pass: &PassDecl, params: &Params) -> String {
-    let list: Vec<String> = choices(pass, params).map(|(name, value, _)| format!("{name} is {value}")).collect();
-    if list.is_empty() { String::new() } else { format!(" (it runs because {})", list.join(" and ")) }
+    let list: Vec<String> = choices(pass, params)
+        .map(|(name, value, _)| format!("{name} is {value}"))
+        .collect();
+    if list.is_empty() {
+        String::new()
+    } else {
+        format!(" (it runs because {})", list.join(" and "))
+    }
 }
 
 fn instead(pass: &PassDecl, params: &Params) -> Option<String> {
     let list: Vec<String> = choices(pass, params)
         .map(|(name, value, options)| {
-            let others: Vec<&str> =
-                options.iter().map(String::as_str).filter(|o| Value::Choice((*o).to_string()) != *value).collect();
+            let others: Vec<&str> = options
+                .iter()
+                .map(String::as_str)
+                .filter(|o| Value::Choice((*o).to_string()) != *value)
+                .collect();
             format!("--set {name}={}", others.join("|"))
         })
         .collect();

@@ -13,7 +13,11 @@ pub(super) struct Numbers<'a> {
 
 impl<'a> Numbers<'a> {
     pub fn new(set: &'a Evaluated<'a>) -> Numbers<'a> {
-        Numbers { set, env: set.env.clone(), errors: Vec::new() }
+        Numbers {
+            set,
+            env: set.env.clone(),
+            errors: Vec::new(),
+        }
     }
 
     pub fn error(&mut self, at: At, message: String) {
@@ -46,7 +50,13 @@ impl<'a> Numbers<'a> {
         }
         let rounded = (value + 1e-9).floor();
         if rounded < f64::from(low) || rounded > f64::from(i32::MAX) {
-            self.error(ex.at, format!("{what} '{}' is {value}, and must be at least {low}", ex.value.text));
+            self.error(
+                ex.at,
+                format!(
+                    "{what} '{}' is {value}, and must be at least {low}",
+                    ex.value.text
+                ),
+            );
             return low;
         }
         rounded as u32
@@ -55,6 +65,9 @@ impl<'a> Numbers<'a> {
     /// The first case whose condition holds; the last one has none.
     pub fn case<'e>(&mut self, conditions: impl ExactSizeIterator<Item = Option<&'e Ex>>) -> usize {
         let last = conditions.len().saturating_sub(1);
-        conditions.enumerate().find(|(_, when)| when.is_none_or(|ex| self.holds(ex))).map_or(last, |(i, _)| i)
+        conditions
+            .enumerate()
+            .find(|(_, when)| when.is_none_or(|ex| self.holds(ex)))
+            .map_or(last, |(i, _)| i)
     }
 }

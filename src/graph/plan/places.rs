@@ -21,9 +21,17 @@ impl Places {
             count += places;
             count - places
         };
-        let textures = plan.textures.iter().map(|t| [next(t.mips as usize), next(t.mips as usize)]).collect();
+        let textures = plan
+            .textures
+            .iter()
+            .map(|t| [next(t.mips as usize), next(t.mips as usize)])
+            .collect();
         let buffers = next(2 * plan.buffers.len());
-        Places { textures, buffers, count }
+        Places {
+            textures,
+            buffers,
+            count,
+        }
     }
 
     /// Of mips of a copy; a buffer has one.

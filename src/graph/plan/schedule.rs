@@ -4,7 +4,9 @@ use super::data::{Plan, Step};
 use super::places::Places;
 use super::uses::{Use, begins};
 use crate::graph::definition::Res;
-use crate::vulkan::vk::{AccessFlags2 as Access, ImageLayout as Layout, PipelineStageFlags2 as Stages};
+use crate::vulkan::vk::{
+    AccessFlags2 as Access, ImageLayout as Layout, PipelineStageFlags2 as Stages,
+};
 
 /// One barrier before a step.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,7 +59,11 @@ pub fn schedule(plan: &Plan) -> Schedule {
         barriers[parity] = plan.steps.iter().map(before).collect();
         ends[parity] = states.iter().map(|s| s.layout).collect();
     }
-    Schedule { barriers, ends, places }
+    Schedule {
+        barriers,
+        ends,
+        places,
+    }
 }
 
 /// Who may have used memory before a transient resource begins in it: whoever uses transients at all.
@@ -71,7 +77,14 @@ fn of_shared_memory(plan: &Plan) -> State {
     all
 }
 
-fn before(plan: &Plan, places: &Places, step: &Step, odd: bool, shared: &State, states: &mut [State]) -> Vec<Barrier> {
+fn before(
+    plan: &Plan,
+    places: &Places,
+    step: &Step,
+    odd: bool,
+    shared: &State,
+    states: &mut [State],
+) -> Vec<Barrier> {
     let mut list: Vec<Barrier> = Vec::new();
     // Reads first: a step that takes its size from a buffer that it writes has not waited for that write.
     let (writes, reads): (Vec<&Use>, Vec<&Use>) = step.uses.iter().partition(|u| u.write);
@@ -87,7 +100,9 @@ fn before(plan: &Plan, places: &Places, step: &Step, odd: bool, shared: &State, 
             if anew {
                 *state = shared.clone();
             }
-            let Some((src, old)) = advance(state, u) else { continue };
+            let Some((src, old)) = advance(state, u) else {
+                continue;
+            };
             let (dst, layouts) = ((u.stages, u.access), (old, u.layout));
             match list.last_mut() {
                 Some(last)
@@ -97,7 +112,13 @@ fn before(plan: &Plan, places: &Places, step: &Step, odd: bool, shared: &State, 
                 {
                     last.mips.1 += 1;
                 }
-                _ => list.push(Barrier { res, mips: (mip, 1), src, dst, layouts }),
+                _ => list.push(Barrier {
+                    res,
+                    mips: (mip, 1),
+                    src,
+                    dst,
+                    layouts,
+                }),
             }
         }
     }
@@ -114,7 +135,8 @@ fn advance(state: &mut State, u: &Use) -> Option<((Stages, Access), Layout)> {
         state.layout = u.layout;
         if u.write {
             // Later readers must wait for this write.
-            (state.write, state.reads, state.seen) = ((u.stages, write_part(u.access)), Stages::empty(), vec![]);
+            (state.write, state.reads, state.seen) =
+                ((u.stages, write_part(u.access)), Stages::empty(), vec![]);
         } else {
             // A transition is a write that this use has seen.
             (state.write, state.reads) = ((u.stages, Access::empty()), u.stages);
@@ -122,7 +144,10 @@ fn advance(state: &mut State, u: &Use) -> Option<((Stages, Access), Layout)> {
         }
         (src.0 != Stages::empty() || transition).then_some(src)
     } else {
-        let seen = state.seen.iter().any(|s| s.0.contains(u.stages) && s.1.contains(u.access));
+        let seen = state
+            .seen
+            .iter()
+            .any(|s| s.0.contains(u.stages) && s.1.contains(u.access));
         state.reads |= u.stages;
         // One that is only asked for its size waits for nobody.
         let waits = u.read && state.write.0 != Stages::empty() && !seen;

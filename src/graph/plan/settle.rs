@@ -12,7 +12,11 @@ use std::collections::{BTreeMap, BTreeSet};
 ///
 /// # Errors
 /// Passes among them that meddle with what others write, or read it where it may be missing.
-pub(super) fn find(graph: &Graph, plan: &Plan, frames: &Declared) -> Result<Vec<Settling>, Vec<Diagnostic>> {
+pub(super) fn find(
+    graph: &Graph,
+    plan: &Plan,
+    frames: &Declared,
+) -> Result<Vec<Settling>, Vec<Diagnostic>> {
     let steps = &plan.steps;
     let mut groups: BTreeMap<At, (u32, Vec<usize>)> = BTreeMap::new();
     for (i, step) in steps.iter().enumerate() {
@@ -20,7 +24,10 @@ pub(super) fn find(graph: &Graph, plan: &Plan, frames: &Declared) -> Result<Vec<
             groups.entry(*at).or_insert((*frames, Vec::new())).1.push(i);
         }
     }
-    let errors: Vec<Diagnostic> = groups.values().filter_map(|(_, own)| meddler(graph, plan, own)).collect();
+    let errors: Vec<Diagnostic> = groups
+        .values()
+        .filter_map(|(_, own)| meddler(graph, plan, own))
+        .collect();
     if !errors.is_empty() {
         return Err(errors);
     }
@@ -31,7 +38,12 @@ pub(super) fn find(graph: &Graph, plan: &Plan, frames: &Declared) -> Result<Vec<
                 kept.push(u.res);
             }
         }
-        Settling { frames, ring: ring(steps, &own), kept, steps: own }
+        Settling {
+            frames,
+            ring: ring(steps, &own),
+            kept,
+            steps: own,
+        }
     };
     Ok(groups.into_values().map(settling).collect())
 }
@@ -48,12 +60,20 @@ fn meddler(graph: &Graph, plan: &Plan, own: &[usize]) -> Option<Diagnostic> {
     let name = |i: usize| &graph.passes[steps[i].pass].value.name;
     for (i, step) in steps.iter().enumerate().filter(|(i, _)| !own.contains(i)) {
         for u in &step.uses {
-            let Some(theirs) = written(steps, own).find(|w| w.res == u.res) else { continue };
+            let Some(theirs) = written(steps, own).find(|w| w.res == u.res) else {
+                continue;
+            };
             let what = graph.title_of(u.res);
             let message = match theirs {
-                _ if u.write => format!("'{what}' is written by pass '{}' too, which settles", name(*first).value),
+                _ if u.write => format!(
+                    "'{what}' is written by pass '{}' too, which settles",
+                    name(*first).value
+                ),
                 _ if (*first..=*last).contains(&i) => {
-                    format!("'{what}' is read here before pass '{}', which settles, is through", name(*last).value)
+                    format!(
+                        "'{what}' is read here before pass '{}', which settles, is through",
+                        name(*last).value
+                    )
                 }
                 _ if !plan.has_history(u.res) => format!(
                     "'{what}' is read here and written by pass '{}', which settles: give it a history, so that it is kept",
@@ -71,18 +91,28 @@ fn meddler(graph: &Graph, plan: &Plan, own: &[usize]) -> Option<Diagnostic> {
 fn ring(steps: &[Step], own: &[usize]) -> Vec<usize> {
     // Of both copies of what has a history: what is written is read in this frame or in the next.
     let touched = |i: usize, how: fn(&Use) -> bool| -> BTreeSet<_> {
-        steps[i].uses.iter().filter(|u| how(u)).flat_map(parts).collect()
+        steps[i]
+            .uses
+            .iter()
+            .filter(|u| how(u))
+            .flat_map(parts)
+            .collect()
     };
     let reads: Vec<BTreeSet<_>> = (0..steps.len()).map(|i| touched(i, |u| u.read)).collect();
     let writes: Vec<BTreeSet<_>> = (0..steps.len()).map(|i| touched(i, |u| u.write)).collect();
     let reached = |from: &[BTreeSet<_>], to: &[BTreeSet<_>]| {
         let mut list: BTreeSet<usize> = own.iter().copied().collect();
         let mut parts: BTreeSet<_> = own.iter().flat_map(|i| &from[*i]).copied().collect();
-        while let Some(next) = (0..steps.len()).find(|i| !list.contains(i) && !to[*i].is_disjoint(&parts)) {
+        while let Some(next) =
+            (0..steps.len()).find(|i| !list.contains(i) && !to[*i].is_disjoint(&parts))
+        {
             list.insert(next);
             parts.extend(&from[next]);
         }
         list
     };
-    reached(&writes, &reads).intersection(&reached(&reads, &writes)).copied().collect()
+    reached(&writes, &reads)
+        .intersection(&reached(&reads, &writes))
+        .copied()
+        .collect()
 }

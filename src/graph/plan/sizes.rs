@@ -15,7 +15,11 @@ pub(super) fn format(params: &Params, name: &str) -> Option<Format> {
     })
 }
 
-pub(super) fn textures(numbers: &mut Numbers<'_>, wanted: &[String], device: &DeviceInfo) -> Vec<TexturePlan> {
+pub(super) fn textures(
+    numbers: &mut Numbers<'_>,
+    wanted: &[String],
+    device: &DeviceInfo,
+) -> Vec<TexturePlan> {
     let (limits, allows) = (&device.limits, &device.name);
     let mut list = Vec::new();
     for (name, texture) in &numbers.set.graph.textures {
@@ -24,19 +28,38 @@ pub(super) fn textures(numbers: &mut Numbers<'_>, wanted: &[String], device: &De
         for (slot, ex) in extent.iter_mut().zip(&t.size.0) {
             *slot = numbers.count(ex, 1, "size");
         }
-        let mips = t.mips.as_ref().map_or(1, |ex| numbers.count(ex, 1, "mip count"));
-        let layers = t.layers.as_ref().map_or(1, |ex| numbers.count(ex, 1, "layer count"));
+        let mips = t
+            .mips
+            .as_ref()
+            .map_or(1, |ex| numbers.count(ex, 1, "mip count"));
+        let layers = t
+            .layers
+            .as_ref()
+            .map_or(1, |ex| numbers.count(ex, 1, "layer count"));
         let most = 32 - extent.iter().max().unwrap_or(&1).leading_zeros();
         if mips > most {
-            numbers.error(texture.at, format!("'{name}' has {mips} mips; {extent:?} texels allow {most}"));
+            numbers.error(
+                texture.at,
+                format!("'{name}' has {mips} mips; {extent:?} texels allow {most}"),
+            );
         }
-        let side = if t.is_volume() { limits.max_image_dimension3_d } else { limits.max_image_dimension2_d };
+        let side = if t.is_volume() {
+            limits.max_image_dimension3_d
+        } else {
+            limits.max_image_dimension2_d
+        };
         for (n, ex) in extent.iter().zip(&t.size.0).filter(|(n, _)| **n > side) {
-            numbers.error(ex.at, format!("'{name}' is {n} texels long; {allows} allows {side}"));
+            numbers.error(
+                ex.at,
+                format!("'{name}' is {n} texels long; {allows} allows {side}"),
+            );
         }
         let most_layers = limits.max_image_array_layers;
         if layers > most_layers {
-            numbers.error(texture.at, format!("'{name}' has {layers} layers; {allows} allows {most_layers}"));
+            numbers.error(
+                texture.at,
+                format!("'{name}' has {layers} layers; {allows} allows {most_layers}"),
+            );
         }
         let Some(format) = format(numbers.set.params, &t.format.value) else {
             numbers.error(t.format.at, format!("'{}' is no format", t.format.value));
@@ -72,17 +95,32 @@ pub(super) fn buffers(
                 // Mistakes were told with the shaders. Where none declares it, none reads it.
                 let size = layouts.struct_size(name, count.is_some()).ok().flatten();
                 let elements = count.as_ref().map_or(0, |ex| numbers.count(ex, 1, "count"));
-                size.map_or(4.0, |(bytes, stride)| f64::from(bytes) + f64::from(stride) * f64::from(elements)).max(4.0)
+                size.map_or(4.0, |(bytes, stride)| {
+                    f64::from(bytes) + f64::from(stride) * f64::from(elements)
+                })
+                .max(4.0)
             }
         };
         if numbers.errors.len() == before && !(4.0..=f64::from(limit)).contains(&bytes) {
-            let message = format!("buffer '{name}' is {bytes} bytes; {} allows 4 to {limit}", device.name);
+            let message = format!(
+                "buffer '{name}' is {bytes} bytes; {} allows 4 to {limit}",
+                device.name
+            );
             numbers.error(buffer.size.at, message);
         }
         // One whose size was told as wrong holds everything.
-        let size = if numbers.errors.len() == before { bytes as u64 } else { u64::MAX };
+        let size = if numbers.errors.len() == before {
+            bytes as u64
+        } else {
+            u64::MAX
+        };
         let transient = buffer.transient && !wanted.contains(name);
-        list.push(BufferPlan { size, used: false, history: buffer.history, transient });
+        list.push(BufferPlan {
+            size,
+            used: false,
+            history: buffer.history,
+            transient,
+        });
     }
     list
 }

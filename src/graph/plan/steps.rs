@@ -27,12 +27,18 @@ impl<'a> Planner<'a, '_> {
 
     pub fn steps(&mut self, number: usize, pass: &PassDecl, link: &Linked) -> Vec<Step> {
         let indices: Vec<u32> = if let Some(each) = &pass.each_mip {
-            let mips = self.graph().texture(&each.value.texture.value).map_or(0, |t| self.textures[t].mips);
+            let mips = self
+                .graph()
+                .texture(&each.value.texture.value)
+                .map_or(0, |t| self.textures[t].mips);
             (each.value.from..mips).collect()
         } else if let Some(repeat) = &pass.repeat {
             let count = self.numbers.count(repeat, 0, "repeat");
             if count > 4096 {
-                self.numbers.error(repeat.at, format!("repeat '{}' is {count}, more than 4096", repeat.value.text));
+                self.numbers.error(
+                    repeat.at,
+                    format!("repeat '{}' is {count}, more than 4096", repeat.value.text),
+                );
                 return Vec::new();
             }
             (0..count).collect()
@@ -43,8 +49,12 @@ impl<'a> Planner<'a, '_> {
         let mut steps = Vec::new();
         for index in indices {
             if repeats {
-                self.numbers.env.insert("index".into(), Var::Number(f64::from(index)));
-                self.numbers.env.insert("mip".into(), Var::Number(f64::from(index)));
+                self.numbers
+                    .env
+                    .insert("index".into(), Var::Number(f64::from(index)));
+                self.numbers
+                    .env
+                    .insert("mip".into(), Var::Number(f64::from(index)));
             }
             steps.extend(self.step(number, pass, link, index));
         }
@@ -68,7 +78,9 @@ impl<'a> Planner<'a, '_> {
             uses: Vec::new(),
         };
         for (i, bound) in link.bound.iter().enumerate() {
-            let case = self.numbers.case(bound.cases.iter().map(|c| c.when.as_ref()));
+            let case = self
+                .numbers
+                .case(bound.cases.iter().map(|c| c.when.as_ref()));
             step.cases.push(case);
             self.binding(i, bound, &bound.cases[case], &mut step);
         }
@@ -81,17 +93,33 @@ impl<'a> Planner<'a, '_> {
 
     /// Where every thread stores at its own place, and there are as many as texels, nothing is left of what was there.
     fn covers(&self, link: &Linked, step: &mut Step) {
-        let (Work::Dispatch(groups), [shader]) = (&step.work, &link.stages[..]) else { return };
-        let threads: [u32; 3] = std::array::from_fn(|k| groups[k].saturating_mul(shader.interface.local_size[k]));
+        let (Work::Dispatch(groups), [shader]) = (&step.work, &link.stages[..]) else {
+            return;
+        };
+        let threads: [u32; 3] =
+            std::array::from_fn(|k| groups[k].saturating_mul(shader.interface.local_size[k]));
         for binding in &step.bindings {
             let texture = &self.textures[binding.texture];
             let [x, y, z] = texture.mip_extent(binding.mips.0);
             let texels = [x, y, if texture.volume { z } else { texture.layers }];
-            let covered = shader.interface.covers.contains(&link.bound[binding.bound].binding);
-            if covered && threads.iter().zip(texels).all(|(threads, texels)| *threads >= texels) {
+            let covered = shader
+                .interface
+                .covers
+                .contains(&link.bound[binding.bound].binding);
+            if covered
+                && threads
+                    .iter()
+                    .zip(texels)
+                    .all(|(threads, texels)| *threads >= texels)
+            {
                 let res = Res::Texture(binding.texture, binding.history);
-                let stores = |u: &&mut Use| u.res == res && u.mips == binding.mips && u.kind == UseKind::Storage;
-                step.uses.iter_mut().filter(stores).for_each(|u| u.overwrite = u.write && !u.read);
+                let stores = |u: &&mut Use| {
+                    u.res == res && u.mips == binding.mips && u.kind == UseKind::Storage
+                };
+                step.uses
+                    .iter_mut()
+                    .filter(stores)
+                    .for_each(|u| u.overwrite = u.write && !u.read);
             }
         }
     }
@@ -104,14 +132,18 @@ impl<'a> Planner<'a, '_> {
             Target::Buffer(b) => {
                 let res = Res::Buffer(b, decl.is_some_and(|d| d.history));
                 step.uses.push(match bound.resource {
-                    Resource::Buffer { read, write } => Use::shader(res, (0, 1), UseKind::Buffer, stage, read, write),
+                    Resource::Buffer { read, write } => {
+                        Use::shader(res, (0, 1), UseKind::Buffer, stage, read, write)
+                    }
                     _ => Use::uniform(res, stage),
                 });
             }
             Target::Texture(t) => {
                 let all = self.textures[t].mips;
                 let storage = matches!(bound.resource, Resource::Storage { .. });
-                let mip = decl.and_then(|d| d.mip.as_ref()).map(|ex| self.numbers.count(ex, 0, "mip"));
+                let mip = decl
+                    .and_then(|d| d.mip.as_ref())
+                    .map(|ex| self.numbers.count(ex, 0, "mip"));
                 let mips = match mip {
                     Some(m) => (m, 1),
                     None if storage => (0, 1),
@@ -120,9 +152,13 @@ impl<'a> Planner<'a, '_> {
                 let at = decl.map_or(self.graph().textures[t].1.at, |d| d.of.at);
                 if mips.0 + mips.1 > all {
                     let name = &self.graph().textures[t].0;
-                    return self
-                        .numbers
-                        .error(at, format!("'{name}' has {all} mips, counted from 0, and no mip {}", mips.0));
+                    return self.numbers.error(
+                        at,
+                        format!(
+                            "'{name}' has {all} mips, counted from 0, and no mip {}",
+                            mips.0
+                        ),
+                    );
                 }
                 let history = decl.is_some_and(|d| d.history);
                 let view = decl.and_then(|d| d.format.as_ref());
@@ -131,7 +167,14 @@ impl<'a> Planner<'a, '_> {
                     Resource::Storage { read, write, .. } => (UseKind::Storage, read, write),
                     _ => (UseKind::Sampled, true, false),
                 };
-                step.uses.push(Use::shader(Res::Texture(t, history), mips, kind, stage, read, write));
+                step.uses.push(Use::shader(
+                    Res::Texture(t, history),
+                    mips,
+                    kind,
+                    stage,
+                    read,
+                    write,
+                ));
                 step.bindings.push(BindingPlan {
                     bound: i,
                     texture: t,
@@ -147,16 +190,36 @@ impl<'a> Planner<'a, '_> {
     fn attachments(&mut self, pass: &PassDecl, step: &mut Step) {
         let mut size = None;
         for t in pass.color.0.iter().map(|target| &target.value) {
-            let mip = t.mip.as_ref().map_or(0, |ex| self.numbers.count(ex, 0, "mip"));
+            let mip = t
+                .mip
+                .as_ref()
+                .map_or(0, |ex| self.numbers.count(ex, 0, "mip"));
             let clear = t.clear.map(|c| [c.0, c.1, c.2, c.3]);
-            let plan =
-                self.attachment(&t.to, (mip, t.layer.as_ref()), clear, UseKind::Color, &mut step.uses, &mut size);
+            let plan = self.attachment(
+                &t.to,
+                (mip, t.layer.as_ref()),
+                clear,
+                UseKind::Color,
+                &mut step.uses,
+                &mut size,
+            );
             step.color.extend(plan.map(Some));
         }
         if let Some(t) = pass.depth.as_ref().map(|target| &target.value) {
             let clear = t.clear.map(|c| [c, 0.0, 0.0, 0.0]);
-            let kind = if t.write { UseKind::Depth } else { UseKind::DepthRead };
-            step.depth = self.attachment(&t.to, (0, t.layer.as_ref()), clear, kind, &mut step.uses, &mut size);
+            let kind = if t.write {
+                UseKind::Depth
+            } else {
+                UseKind::DepthRead
+            };
+            step.depth = self.attachment(
+                &t.to,
+                (0, t.layer.as_ref()),
+                clear,
+                kind,
+                &mut step.uses,
+                &mut size,
+            );
         }
         step.viewport = size.unwrap_or([1, 1]);
         if let Some(extent) = &pass.raster.size {
@@ -170,16 +233,26 @@ impl<'a> Planner<'a, '_> {
                 let [w, h] = step.viewport;
                 self.numbers.error(
                     extent.at,
-                    format!("viewport {w}x{h} is larger than the {most} that {} allows", self.device.name),
+                    format!(
+                        "viewport {w}x{h} is larger than the {most} that {} allows",
+                        self.device.name
+                    ),
                 );
             }
         }
         if let Some(samples) = &pass.raster.samples {
             step.samples = self.numbers.count(samples, 1, "samples");
-            let have = self.device.limits.framebuffer_no_attachments_sample_counts.as_raw();
+            let have = self
+                .device
+                .limits
+                .framebuffer_no_attachments_sample_counts
+                .as_raw();
             if !step.samples.is_power_of_two() || have & step.samples == 0 {
-                let known: Vec<String> =
-                    (0..7).map(|b| 1u32 << b).filter(|n| have & n != 0).map(|n| n.to_string()).collect();
+                let known: Vec<String> = (0..7)
+                    .map(|b| 1u32 << b)
+                    .filter(|n| have & n != 0)
+                    .map(|n| n.to_string())
+                    .collect();
                 let message = format!(
                     "{} has no rasterisation with {} samples; it has {}",
                     self.device.name,
@@ -205,20 +278,39 @@ impl<'a> Planner<'a, '_> {
         let layer = layer.map_or(0, |ex| self.numbers.count(ex, 0, "layer"));
         let t = &self.textures[texture];
         // A clear of one layer leaves the others.
-        uses.push(Use::attachment(texture, mip, kind, clear.is_some() && t.layers == 1));
+        uses.push(Use::attachment(
+            texture,
+            mip,
+            kind,
+            clear.is_some() && t.layers == 1,
+        ));
         let [width, height, _] = t.mip_extent(mip);
         if mip >= t.mips || layer >= t.layers {
-            self.numbers.error(to.at, format!("mip {mip} or layer {layer} does not exist"));
+            self.numbers
+                .error(to.at, format!("mip {mip} or layer {layer} does not exist"));
         } else if let [w, h] = *size.get_or_insert([width, height])
             && [w, h] != [width, height]
         {
-            self.numbers.error(to.at, format!("attachments differ in size: {w}x{h} and {width}x{height}"));
+            self.numbers.error(
+                to.at,
+                format!("attachments differ in size: {w}x{h} and {width}x{height}"),
+            );
         }
-        Some(AttachmentPlan { texture, mip, layer, clear, write: kind != UseKind::DepthRead })
+        Some(AttachmentPlan {
+            texture,
+            mip,
+            layer,
+            clear,
+            write: kind != UseKind::DepthRead,
+        })
     }
 
     fn work(&mut self, pass: &PassDecl, link: &Linked, step: &mut Step) -> Option<Work> {
-        let local = link.stages.iter().find(|s| s.stage == Stage::Compute).map_or([1; 3], |s| s.interface.local_size);
+        let local = link
+            .stages
+            .iter()
+            .find(|s| s.stage == Stage::Compute)
+            .map_or([1; 3], |s| s.interface.local_size);
         if let Some(dispatch) = &pass.dispatch {
             let threads = match &dispatch.value {
                 Dispatch::Indirect(path) => {
@@ -230,7 +322,9 @@ impl<'a> Planner<'a, '_> {
                     let groups = [x, y, z].map(|ex| self.numbers.count(ex, 1, "group count"));
                     return self.grid(dispatch.at, groups).map(Work::Dispatch);
                 }
-                Dispatch::Threads(x, y, z) => [x, y, z].map(|ex| self.numbers.count(ex, 1, "thread count")),
+                Dispatch::Threads(x, y, z) => {
+                    [x, y, z].map(|ex| self.numbers.count(ex, 1, "thread count"))
+                }
                 Dispatch::Cover(name) => self.covered(pass, link, step, &name.value)?,
             };
             let groups = std::array::from_fn(|i| threads[i].div_ceil(local[i].max(1)));
@@ -251,9 +345,10 @@ impl<'a> Planner<'a, '_> {
         let v = pass.value.unwrap_or_default();
         let (mips, work) = match res {
             Res::Buffer(buffer, _) => (1, Work::ClearBuffer(buffer, v.0 as u32)),
-            Res::Texture(texture, _) => {
-                (self.textures[texture].mips, Work::ClearTexture(texture, [v.0, v.1, v.2, v.3]))
-            }
+            Res::Texture(texture, _) => (
+                self.textures[texture].mips,
+                Work::ClearTexture(texture, [v.0, v.1, v.2, v.3]),
+            ),
         };
         step.uses.push(Use::clear(res, (0, mips)));
         Some(work)
@@ -267,7 +362,10 @@ impl<'a> Planner<'a, '_> {
         let offset = match self.layouts.command(path, words) {
             Ok(Some(offset)) => offset,
             Ok(None) => {
-                self.numbers.error(at, format!("no shader that runs declares '{name}', so its members have no place"));
+                self.numbers.error(
+                    at,
+                    format!("no shader that runs declares '{name}', so its members have no place"),
+                );
                 return None;
             }
             Err(found) => {
@@ -285,7 +383,13 @@ impl<'a> Planner<'a, '_> {
         Some((buffer, offset))
     }
 
-    fn covered(&mut self, pass: &PassDecl, link: &Linked, step: &Step, name: &str) -> Option<[u32; 3]> {
+    fn covered(
+        &mut self,
+        pass: &PassDecl,
+        link: &Linked,
+        step: &Step,
+        name: &str,
+    ) -> Option<[u32; 3]> {
         let bound = link.bound.iter().position(|b| b.name == name);
         let binding = bound.and_then(|i| step.bindings.iter().find(|b| b.bound == i));
         let (texture, mip) = match binding {
@@ -295,7 +399,10 @@ impl<'a> Planner<'a, '_> {
                 let case = self.numbers.case(cases.iter().map(|c| c.0.as_ref()));
                 match cases.into_iter().nth(case).and_then(|c| c.1) {
                     Some(bind) => {
-                        let mip = bind.mip.as_ref().map_or(0, |ex| self.numbers.count(ex, 0, "mip"));
+                        let mip = bind
+                            .mip
+                            .as_ref()
+                            .map_or(0, |ex| self.numbers.count(ex, 0, "mip"));
                         (self.graph().texture(&bind.of.value)?, mip)
                     }
                     None => (self.graph().texture(name)?, 0),
@@ -308,8 +415,13 @@ impl<'a> Planner<'a, '_> {
     fn grid(&mut self, at: At, groups: [u32; 3]) -> Option<[u32; 3]> {
         let most = self.device.limits.max_compute_work_group_count;
         if groups.iter().zip(&most).any(|(g, m)| g > m) {
-            self.numbers
-                .error(at, format!("{groups:?} groups are more than the {most:?} that {} allows", self.device.name));
+            self.numbers.error(
+                at,
+                format!(
+                    "{groups:?} groups are more than the {most:?} that {} allows",
+                    self.device.name
+                ),
+            );
             return None;
         }
         Some(groups)

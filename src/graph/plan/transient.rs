@@ -14,7 +14,10 @@ pub(super) fn find(graph: &Graph, plan: &Plan) -> Result<Vec<Transient>, Vec<Dia
     let textures = (0..plan.textures.len()).map(|t| Res::Texture(t, false));
     let buffers = (0..plan.buffers.len()).map(|b| Res::Buffer(b, false));
     let (mut list, mut errors) = (Vec::new(), Vec::new());
-    for res in textures.chain(buffers).filter(|res| plan.is_transient(*res)) {
+    for res in textures
+        .chain(buffers)
+        .filter(|res| plan.is_transient(*res))
+    {
         let mut spans: Vec<(usize, usize)> = Vec::new();
         for (i, step) in plan.steps.iter().enumerate() {
             let mut uses = step.uses.iter().filter(|u| u.res == res).peekable();
@@ -25,8 +28,10 @@ pub(super) fn find(graph: &Graph, plan: &Plan) -> Result<Vec<Transient>, Vec<Dia
                 (true, false, None) => {
                     let name = &graph.passes[step.pass].value.name;
                     let what = graph.title_of(res);
-                    let message =
-                        format!("'{what}' is transient, and pass '{}' reads it before it is written", name.value);
+                    let message = format!(
+                        "'{what}' is transient, and pass '{}' reads it before it is written",
+                        name.value
+                    );
                     errors.push(graph.sources.error(name.at, message));
                     break;
                 }
@@ -36,7 +41,11 @@ pub(super) fn find(graph: &Graph, plan: &Plan) -> Result<Vec<Transient>, Vec<Dia
             list.push(Transient { res, spans });
         }
     }
-    if errors.is_empty() { Ok(list) } else { Err(errors) }
+    if errors.is_empty() {
+        Ok(list)
+    } else {
+        Err(errors)
+    }
 }
 
 /// Offsets of resources with these sizes, alignments and times in one piece of memory, and the bytes of all. The largest first,
@@ -44,14 +53,20 @@ pub(super) fn find(graph: &Graph, plan: &Plan) -> Result<Vec<Transient>, Vec<Dia
 /// Memory Management for Deep Neural Net Inference", section 5.2).
 pub fn pack(sizes: &[(u64, u64)], transients: &[Transient]) -> (Vec<u64>, u64) {
     let meet = |a: &Transient, b: &Transient| {
-        a.spans.iter().any(|(first, last)| b.spans.iter().any(|(from, to)| first <= to && from <= last))
+        a.spans
+            .iter()
+            .any(|(first, last)| b.spans.iter().any(|(from, to)| first <= to && from <= last))
     };
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by_key(|i| std::cmp::Reverse(sizes[*i].0));
     let (mut offsets, mut placed): (Vec<u64>, Vec<usize>) = (vec![0; sizes.len()], Vec::new());
     for i in order {
         let (size, alignment) = sizes[i];
-        let mut beside: Vec<usize> = placed.iter().copied().filter(|k| meet(&transients[i], &transients[*k])).collect();
+        let mut beside: Vec<usize> = placed
+            .iter()
+            .copied()
+            .filter(|k| meet(&transients[i], &transients[*k]))
+            .collect();
         beside.sort_by_key(|k| offsets[*k]);
         let mut offset = 0;
         for k in beside {
@@ -63,7 +78,12 @@ pub fn pack(sizes: &[(u64, u64)], transients: &[Transient]) -> (Vec<u64>, u64) {
         offsets[i] = offset;
         placed.push(i);
     }
-    let end = offsets.iter().zip(sizes).map(|(offset, (size, _))| offset + size).max().unwrap_or(0);
+    let end = offsets
+        .iter()
+        .zip(sizes)
+        .map(|(offset, (size, _))| offset + size)
+        .max()
+        .unwrap_or(0);
     (offsets, end)
 }
 
@@ -73,12 +93,20 @@ mod tests {
     use proptest::prelude::*;
 
     fn transient(spans: &[(usize, usize)]) -> Transient {
-        Transient { res: Res::Buffer(0, false), spans: spans.to_vec() }
+        Transient {
+            res: Res::Buffer(0, false),
+            spans: spans.to_vec(),
+        }
     }
 
     #[test]
     fn what_follows_lies_where_the_other_was() {
-        let list = [transient(&[(0, 2)]), transient(&[(3, 5)]), transient(&[(2, 3)]), transient(&[(0, 0), (4, 4)])];
+        let list = [
+            transient(&[(0, 2)]),
+            transient(&[(3, 5)]),
+            transient(&[(2, 3)]),
+            transient(&[(0, 0), (4, 4)]),
+        ];
         let (offsets, end) = pack(&[(100, 1), (80, 1), (50, 64), (20, 1)], &list);
         assert_eq!((offsets, end), (vec![0, 0, 128, 100], 178));
     }

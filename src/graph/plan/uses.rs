@@ -53,19 +53,44 @@ const DEPTH_STAGES: Stages =
 
 impl Use {
     fn new(res: Res, mips: (u32, u32), kind: UseKind, stages: Stages, access: Access) -> Use {
-        Use { res, mips, kind, stages, access, layout: Layout::UNDEFINED, read: true, write: false, overwrite: false }
+        Use {
+            res,
+            mips,
+            kind,
+            stages,
+            access,
+            layout: Layout::UNDEFINED,
+            read: true,
+            write: false,
+            overwrite: false,
+        }
     }
 
     /// A storage buffer, a storage image or a sampled texture in a shader.
-    pub fn shader(res: Res, mips: (u32, u32), kind: UseKind, stages: Stages, read: bool, write: bool) -> Use {
+    pub fn shader(
+        res: Res,
+        mips: (u32, u32),
+        kind: UseKind,
+        stages: Stages,
+        read: bool,
+        write: bool,
+    ) -> Use {
         let mut access = Access::empty();
         if read {
-            access |= if kind == UseKind::Sampled { Access::SHADER_SAMPLED_READ } else { Access::SHADER_STORAGE_READ };
+            access |= if kind == UseKind::Sampled {
+                Access::SHADER_SAMPLED_READ
+            } else {
+                Access::SHADER_STORAGE_READ
+            };
         }
         if write {
             access |= Access::SHADER_STORAGE_WRITE;
         }
-        Use { read, write, ..Use::new(res, mips, kind, stages, access) }
+        Use {
+            read,
+            write,
+            ..Use::new(res, mips, kind, stages, access)
+        }
     }
 
     /// A uniform block in a shader.
@@ -79,27 +104,54 @@ impl Use {
             UseKind::Color => (
                 Stages::COLOR_ATTACHMENT_OUTPUT,
                 Access::COLOR_ATTACHMENT_WRITE
-                    | if overwrite { Access::empty() } else { Access::COLOR_ATTACHMENT_READ },
+                    | if overwrite {
+                        Access::empty()
+                    } else {
+                        Access::COLOR_ATTACHMENT_READ
+                    },
             ),
-            UseKind::Depth => {
-                (DEPTH_STAGES, Access::DEPTH_STENCIL_ATTACHMENT_READ | Access::DEPTH_STENCIL_ATTACHMENT_WRITE)
-            }
+            UseKind::Depth => (
+                DEPTH_STAGES,
+                Access::DEPTH_STENCIL_ATTACHMENT_READ | Access::DEPTH_STENCIL_ATTACHMENT_WRITE,
+            ),
             _ => (DEPTH_STAGES, Access::DEPTH_STENCIL_ATTACHMENT_READ),
         };
         let (read, write) = (!overwrite, kind != UseKind::DepthRead);
-        Use { read, write, overwrite, ..Use::new(Res::Texture(texture, false), (mip, 1), kind, stages, access) }
+        Use {
+            read,
+            write,
+            overwrite,
+            ..Use::new(Res::Texture(texture, false), (mip, 1), kind, stages, access)
+        }
     }
 
     /// A clear, which replaces the content.
     pub fn clear(res: Res, mips: (u32, u32)) -> Use {
-        let cleared = Use::new(res, mips, UseKind::Clear, Stages::ALL_TRANSFER, Access::TRANSFER_WRITE);
-        Use { read: false, write: true, overwrite: true, ..cleared }
+        let cleared = Use::new(
+            res,
+            mips,
+            UseKind::Clear,
+            Stages::ALL_TRANSFER,
+            Access::TRANSFER_WRITE,
+        );
+        Use {
+            read: false,
+            write: true,
+            overwrite: true,
+            ..cleared
+        }
     }
 
     /// Sizes of a dispatch or draw.
     pub fn indirect(buffer: usize) -> Use {
         let access = Access::INDIRECT_COMMAND_READ;
-        Use::new(Res::Buffer(buffer, false), (0, 1), UseKind::Indirect, Stages::DRAW_INDIRECT, access)
+        Use::new(
+            Res::Buffer(buffer, false),
+            (0, 1),
+            UseKind::Indirect,
+            Stages::DRAW_INDIRECT,
+            access,
+        )
     }
 }
 
@@ -107,7 +159,10 @@ impl Use {
 pub fn merge(uses: Vec<Use>) -> Vec<Use> {
     let mut list: Vec<Use> = Vec::new();
     for u in uses {
-        match list.iter_mut().find(|o| o.res == u.res && o.mips == u.mips && o.kind == u.kind) {
+        match list
+            .iter_mut()
+            .find(|o| o.res == u.res && o.mips == u.mips && o.kind == u.kind)
+        {
             Some(other) => {
                 other.stages |= u.stages;
                 other.access |= u.access;

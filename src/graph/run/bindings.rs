@@ -9,8 +9,8 @@ use crate::graph::link::{Bound, BoundCase, Linked, Target, bound_shape};
 use crate::graph::plan::{AttachmentPlan, BindingPlan, Plan, Step};
 use crate::shader::{Resource, Shape};
 use crate::vulkan::{
-    Buffer, DescriptorPool, DescriptorSet, DescriptorWrite, Gpu, Pipeline, Result, Sampler, SamplerDesc, View,
-    ViewDesc, VulkanError, format::Channels, vk,
+    Buffer, DescriptorPool, DescriptorSet, DescriptorWrite, Gpu, Pipeline, Result, Sampler,
+    SamplerDesc, View, ViewDesc, VulkanError, format::Channels, vk,
 };
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -49,12 +49,28 @@ impl Sets {
     /// None yet, with room for those of a plan.
     pub fn new(gpu: &Arc<Gpu>, plan: &Plan, linked: &[Linked]) -> Result<Sets> {
         let bound = plan.steps.iter().flat_map(|s| &linked[s.pass].bound);
-        let kinds: Vec<_> = bound.map(|b| descriptor_type(&b.resource)).flat_map(|k| [k, k]).collect();
-        let pool = DescriptorPool::new(gpu, u32::try_from(plan.steps.len() * 2).unwrap_or(u32::MAX), &kinds)?;
-        Ok(Sets { pool, samplers: HashMap::new(), views: Vec::new() })
+        let kinds: Vec<_> = bound
+            .map(|b| descriptor_type(&b.resource))
+            .flat_map(|k| [k, k])
+            .collect();
+        let pool = DescriptorPool::new(
+            gpu,
+            u32::try_from(plan.steps.len() * 2).unwrap_or(u32::MAX),
+            &kinds,
+        )?;
+        Ok(Sets {
+            pool,
+            samplers: HashMap::new(),
+            views: Vec::new(),
+        })
     }
 
-    pub fn step(&mut self, offered: &Offered<'_>, step: &Step, pipeline: Option<Arc<Pipeline>>) -> Result<StepGpu> {
+    pub fn step(
+        &mut self,
+        offered: &Offered<'_>,
+        step: &Step,
+        pipeline: Option<Arc<Pipeline>>,
+    ) -> Result<StepGpu> {
         let link = &offered.linked[step.pass];
         let mut out = StepGpu {
             push: link.stages.iter().any(|s| s.interface.push),
@@ -64,7 +80,11 @@ impl Sets {
             pipeline,
         };
         for parity in 0..2 {
-            let view = |slot: &Option<AttachmentPlan>| slot.as_ref().map(|a| offered.attachment(a, parity)).transpose();
+            let view = |slot: &Option<AttachmentPlan>| {
+                slot.as_ref()
+                    .map(|a| offered.attachment(a, parity))
+                    .transpose()
+            };
             out.color[parity] = step.color.iter().map(view).collect::<Result<_>>()?;
             out.depth[parity] = view(&step.depth)?;
             if let Some(pipeline) = out.pipeline.as_ref().filter(|_| !link.bound.is_empty()) {
@@ -82,12 +102,20 @@ impl Sets {
         pipeline: &Pipeline,
         parity: usize,
     ) -> Result<DescriptorSet> {
-        let bound = || link.bound.iter().zip(&step.cases).map(|(bound, case)| (bound, &bound.cases[*case]));
+        let bound = || {
+            link.bound
+                .iter()
+                .zip(&step.cases)
+                .map(|(bound, case)| (bound, &bound.cases[*case]))
+        };
         let mut textures = Vec::new();
         for (i, (bound, case)) in bound().enumerate() {
             // Images whose stores were taken out of the shader have no binding.
             let plan = step.bindings.iter().find(|b| b.bound == i);
-            textures.push(plan.map(|plan| self.texture(offered, bound, case, plan, parity)).transpose()?);
+            textures.push(
+                plan.map(|plan| self.texture(offered, bound, case, plan, parity))
+                    .transpose()?,
+            );
         }
         let mut writes = Vec::new();
         for ((bound, case), texture) in bound().zip(&textures) {
@@ -100,19 +128,22 @@ impl Sets {
                         None => continue,
                     }
                 }
-                (Target::Texture(_), Some((view, sampler, layout))) => match self.samplers.get(sampler) {
-                    Some(sampler) if matches!(bound.resource, Resource::Sampled { .. }) => {
-                        DescriptorWrite::Sampled(view, sampler, *layout)
+                (Target::Texture(_), Some((view, sampler, layout))) => {
+                    match self.samplers.get(sampler) {
+                        Some(sampler) if matches!(bound.resource, Resource::Sampled { .. }) => {
+                            DescriptorWrite::Sampled(view, sampler, *layout)
+                        }
+                        _ => DescriptorWrite::Storage(view),
                     }
-                    _ => DescriptorWrite::Storage(view),
-                },
+                }
                 (Target::Texture(_), None) => continue,
             };
             writes.push((bound.binding, descriptor_type(&bound.resource), write));
         }
         let set = self.pool.set(pipeline, &writes)?;
         drop(writes);
-        self.views.extend(textures.into_iter().flatten().map(|(view, ..)| view));
+        self.views
+            .extend(textures.into_iter().flatten().map(|(view, ..)| view));
         Ok(set)
     }
 
@@ -125,7 +156,10 @@ impl Sets {
         plan: &BindingPlan,
         parity: usize,
     ) -> Result<(View, SamplerDesc, vk::ImageLayout)> {
-        let (texture, planned) = (&offered.graph.textures[plan.texture].1.value, &offered.plan.textures[plan.texture]);
+        let (texture, planned) = (
+            &offered.graph.textures[plan.texture].1.value,
+            &offered.plan.textures[plan.texture],
+        );
         let format = plan.format.unwrap_or(planned.format);
         let desc = ViewDesc {
             kind: match bound_shape(texture) {
@@ -142,8 +176,18 @@ impl Sets {
                 _ => vk::ImageUsageFlags::SAMPLED,
             },
         };
-        let view = View::new(offered.resources.image(offered.plan, plan.texture, plan.history, parity)?, &desc)?;
-        let sampler = case.bind.as_ref().and_then(|d| d.sampler).or(texture.sampler).unwrap_or_default();
+        let view = View::new(
+            offered
+                .resources
+                .image(offered.plan, plan.texture, plan.history, parity)?,
+            &desc,
+        )?;
+        let sampler = case
+            .bind
+            .as_ref()
+            .and_then(|d| d.sampler)
+            .or(texture.sampler)
+            .unwrap_or_default();
         let integer = matches!(format.channels, Channels::Uint | Channels::Int);
         let desc = sampler_desc(&sampler, planned.mips > 1, integer);
         if let Entry::Vacant(slot) = self.samplers.entry(desc) {
@@ -167,7 +211,11 @@ impl Offered<'_> {
                 false => vk::ImageUsageFlags::COLOR_ATTACHMENT,
             },
         };
-        View::new(self.resources.image(self.plan, attachment.texture, false, parity)?, &desc)
+        View::new(
+            self.resources
+                .image(self.plan, attachment.texture, false, parity)?,
+            &desc,
+        )
     }
 
     fn external(&self, name: &str) -> Result<DescriptorWrite<'_>> {
@@ -177,10 +225,18 @@ impl Offered<'_> {
         if let Some(buffer) = self.scene.buffers.get(name) {
             return Ok(DescriptorWrite::Buffer(buffer));
         }
-        let view = self.scene.textures.get(name).ok_or_else(|| VulkanError::Code {
-            what: format!("find the scene's '{name}'"),
-            code: vk::Result::ERROR_UNKNOWN,
-        })?;
-        Ok(DescriptorWrite::Sampled(view, &self.scene.sampler, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL))
+        let view = self
+            .scene
+            .textures
+            .get(name)
+            .ok_or_else(|| VulkanError::Code {
+                what: format!("find the scene's '{name}'"),
+                code: vk::Result::ERROR_UNKNOWN,
+            })?;
+        Ok(DescriptorWrite::Sampled(
+            view,
+            &self.scene.sampler,
+            vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+        ))
     }
 }

@@ -36,12 +36,17 @@ pub struct Change {
 impl Parts {
     /// The same without textures and buffers.
     pub fn pipelines_only(&self) -> Parts {
-        Parts { pipelines: self.pipelines.clone(), ..Parts::default() }
+        Parts {
+            pipelines: self.pipelines.clone(),
+            ..Parts::default()
+        }
     }
 
     /// The image of that name and copy, if it is just as described.
     pub(super) fn image(&self, name: &str, copy: usize, desc: &ImageDesc) -> Option<Arc<Image>> {
-        self.images.get(name)?[copy].clone().filter(|i| i.desc == *desc)
+        self.images.get(name)?[copy]
+            .clone()
+            .filter(|i| i.desc == *desc)
     }
 
     /// The buffer of that name and copy, if it is of that size.
@@ -62,14 +67,23 @@ impl Parts {
     /// Bytes of the memory that these and no others share at these times.
     pub(super) fn shared_by(&self, transients: &[(String, Transient)]) -> Option<u64> {
         let there = self.transients.iter().map(|(name, t)| (name, &t.spans));
-        there.eq(transients.iter().map(|(name, t)| (name, &t.spans))).then_some(self.shared_bytes)
+        there
+            .eq(transients.iter().map(|(name, t)| (name, &t.spans)))
+            .then_some(self.shared_bytes)
     }
 
     pub(super) fn holds_image(&self, image: &Arc<Image>) -> bool {
-        self.images.values().flatten().flatten().any(|i| Arc::ptr_eq(i, image))
+        self.images
+            .values()
+            .flatten()
+            .flatten()
+            .any(|i| Arc::ptr_eq(i, image))
     }
 
     pub(super) fn holds_buffer(&self, buffer: &Arc<Buffer>) -> bool {
-        self.buffers.values().flat_map(|(_, copies)| copies.iter().flatten()).any(|b| Arc::ptr_eq(b, buffer))
+        self.buffers
+            .values()
+            .flat_map(|(_, copies)| copies.iter().flatten())
+            .any(|b| Arc::ptr_eq(b, buffer))
     }
 }

@@ -6,8 +6,8 @@ use crate::graph::link::{Linked, Target};
 use crate::graph::plan::{Plan, Step};
 use crate::shader::{MAX_VARIABLE_BYTES, Resource, check_sizes, strip_images, strip_outputs};
 use crate::vulkan::{
-    Attachments, BindingDesc, DrawState, Gpu, Pipeline, PipelineDesc, Result, SamplerDesc, Stage, StageDesc,
-    VulkanError, format::Channels, vk,
+    Attachments, BindingDesc, DrawState, Gpu, Pipeline, PipelineDesc, Result, SamplerDesc, Stage,
+    StageDesc, VulkanError, format::Channels, vk,
 };
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -58,7 +58,9 @@ pub(super) fn make_pipelines(
             descs.len() - 1
         })));
     }
-    descs.iter().try_for_each(|(_, desc)| check_variables(desc))?;
+    descs
+        .iter()
+        .try_for_each(|(_, desc)| check_variables(desc))?;
     let pipelines: Vec<(bool, (PipelineDesc, Arc<Pipeline>))> = descs
         .into_par_iter()
         .map(|(_, desc)| match kept.iter().find(|(d, _)| *d == desc) {
@@ -67,12 +69,19 @@ pub(super) fn make_pipelines(
         })
         .collect::<Result<_>>()?;
     let built = pipelines.iter().filter(|p| p.0).count();
-    Ok(Made { pipelines: pipelines.into_iter().map(|p| p.1).collect(), keys, built })
+    Ok(Made {
+        pipelines: pipelines.into_iter().map(|p| p.1).collect(),
+        keys,
+        built,
+    })
 }
 
 /// Checks the variables of a pipeline's shaders with the values of constants, on which lengths of arrays may depend.
 fn check_variables(desc: &PipelineDesc) -> Result<()> {
-    let checked = desc.stages.iter().try_for_each(|stage| check_sizes(&stage.spirv, &stage.constants));
+    let checked = desc
+        .stages
+        .iter()
+        .try_for_each(|stage| check_sizes(&stage.spirv, &stage.constants));
     checked.map_err(|large| VulkanError::Limit {
         what: format!("the size of the shader variables of pass '{}'", desc.name),
         asked: format!("{} bytes", large.bytes),
@@ -88,7 +97,11 @@ fn pipeline_desc(
     constants: &[(u32, u32)],
     draw: Option<(DrawState, Attachments)>,
 ) -> PipelineDesc {
-    let stripped: Vec<u32> = step.stripped.iter().map(|i| link.bound[*i].binding).collect();
+    let stripped: Vec<u32> = step
+        .stripped
+        .iter()
+        .map(|i| link.bound[*i].binding)
+        .collect();
     // A texture without a binding in the step is one that the stripped shader does not know.
     let bound = link.bound.iter().enumerate().filter(|(i, b)| {
         let texture = matches!(b.cases[step.cases[*i]].target, Target::Texture(_));
@@ -100,19 +113,33 @@ fn pipeline_desc(
         .map(|s| StageDesc {
             stage: s.stage,
             spirv: match &draw {
-                Some((_, attachments)) if s.stage == Stage::Fragment => needed_outputs(&s.words, attachments),
+                Some((_, attachments)) if s.stage == Stage::Fragment => {
+                    needed_outputs(&s.words, attachments)
+                }
                 None if !stripped.is_empty() => Arc::new(strip_images(&s.words, &stripped)),
                 _ => s.words.clone(),
             },
-            constants: constants.iter().filter(|(id, _)| s.interface.constants.contains(id)).copied().collect(),
+            constants: constants
+                .iter()
+                .filter(|(id, _)| s.interface.constants.contains(id))
+                .copied()
+                .collect(),
         })
         .collect();
     PipelineDesc {
         name: pass.name.value.clone(),
         bindings: bound
-            .map(|(_, b)| BindingDesc { binding: b.binding, kind: descriptor_type(&b.resource), stage: b.stage })
+            .map(|(_, b)| BindingDesc {
+                binding: b.binding,
+                kind: descriptor_type(&b.resource),
+                stage: b.stage,
+            })
             .collect(),
-        push_bytes: if link.stages.iter().any(|s| s.interface.push) { 4 } else { 0 },
+        push_bytes: if link.stages.iter().any(|s| s.interface.push) {
+            4
+        } else {
+            0
+        },
         stages,
         draw,
     }
@@ -125,7 +152,11 @@ fn needed_outputs(words: &Arc<Vec<u32>>, attachments: &Attachments) -> Arc<Vec<u
         .filter(|(_, format)| **format == vk::Format::UNDEFINED)
         .map(|(location, _)| location)
         .collect();
-    if unneeded.is_empty() { words.clone() } else { Arc::new(strip_outputs(words, &unneeded)) }
+    if unneeded.is_empty() {
+        words.clone()
+    } else {
+        Arc::new(strip_outputs(words, &unneeded))
+    }
 }
 
 fn draw_state(pass: &PassDecl, step: &Step, plan: &Plan) -> (DrawState, Attachments) {
@@ -134,9 +165,16 @@ fn draw_state(pass: &PassDecl, step: &Step, plan: &Plan) -> (DrawState, Attachme
         color: step
             .color
             .iter()
-            .map(|c| c.as_ref().map_or(vk::Format::UNDEFINED, |a| plan.textures[a.texture].format.vk))
+            .map(|c| {
+                c.as_ref().map_or(vk::Format::UNDEFINED, |a| {
+                    plan.textures[a.texture].format.vk
+                })
+            })
             .collect(),
-        depth: step.depth.as_ref().map(|d| plan.textures[d.texture].format.vk),
+        depth: step
+            .depth
+            .as_ref()
+            .map(|d| plan.textures[d.texture].format.vk),
     };
     let state = DrawState {
         topology: match pass.topology {
@@ -150,7 +188,10 @@ fn draw_state(pass: &PassDecl, step: &Step, plan: &Plan) -> (DrawState, Attachme
             Cull::Back => vk::CullModeFlags::BACK,
             Cull::Front => vk::CullModeFlags::FRONT,
         },
-        depth_test: pass.depth.as_ref().map(|d| compare(d.value.test.unwrap_or(Compare::Less))),
+        depth_test: pass
+            .depth
+            .as_ref()
+            .map(|d| compare(d.value.test.unwrap_or(Compare::Less))),
         depth_write: pass.depth.as_ref().is_some_and(|d| d.value.write),
         depth_clamp: raster.depth_clamp,
         samples: step.samples,
@@ -178,13 +219,23 @@ pub(super) fn sampler_desc(s: &SamplerDecl, mips: bool, integer: bool) -> Sample
     let linear = s.filter == FilterMode::Linear && !integer;
     let mip_linear = mips && !integer && s.mip_filter.unwrap_or(s.filter) == FilterMode::Linear;
     SamplerDesc {
-        filter: if linear { vk::Filter::LINEAR } else { vk::Filter::NEAREST },
-        mip_filter: if mip_linear { vk::SamplerMipmapMode::LINEAR } else { vk::SamplerMipmapMode::NEAREST },
+        filter: if linear {
+            vk::Filter::LINEAR
+        } else {
+            vk::Filter::NEAREST
+        },
+        mip_filter: if mip_linear {
+            vk::SamplerMipmapMode::LINEAR
+        } else {
+            vk::SamplerMipmapMode::NEAREST
+        },
         address: match s.address {
             AddressMode::Clamp => vk::SamplerAddressMode::CLAMP_TO_EDGE,
             AddressMode::Repeat => vk::SamplerAddressMode::REPEAT,
             AddressMode::Mirror => vk::SamplerAddressMode::MIRRORED_REPEAT,
-            AddressMode::BorderZero | AddressMode::BorderOne => vk::SamplerAddressMode::CLAMP_TO_BORDER,
+            AddressMode::BorderZero | AddressMode::BorderOne => {
+                vk::SamplerAddressMode::CLAMP_TO_BORDER
+            }
         },
         border: match (s.address == AddressMode::BorderOne, integer) {
             (true, false) => vk::BorderColor::FLOAT_OPAQUE_WHITE,
@@ -199,8 +250,14 @@ pub(super) fn sampler_desc(s: &SamplerDecl, mips: bool, integer: bool) -> Sample
 
 pub(super) fn clear_value(channels: Channels, value: [f64; 4]) -> vk::ClearColorValue {
     match channels {
-        Channels::Uint => vk::ClearColorValue { uint32: value.map(|v| v as u32) },
-        Channels::Int => vk::ClearColorValue { int32: value.map(|v| v as i32) },
-        _ => vk::ClearColorValue { float32: value.map(|v| v as f32) },
+        Channels::Uint => vk::ClearColorValue {
+            uint32: value.map(|v| v as u32),
+        },
+        Channels::Int => vk::ClearColorValue {
+            int32: value.map(|v| v as i32),
+        },
+        _ => vk::ClearColorValue {
+            float32: value.map(|v| v as f32),
+        },
     }
 }

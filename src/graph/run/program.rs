@@ -117,20 +117,45 @@ impl Program {
         let resources = resources::make(gpu, graph, &plan, parts, &mut change)?;
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
         let size = params.uniform_bytes(&set.values).len() as u64;
-        let params_buffer = Arc::new(Buffer::new(gpu, "params", size, usage, MemoryLocation::GpuOnly)?);
+        let params_buffer = Arc::new(Buffer::new(
+            gpu,
+            "params",
+            size,
+            usage,
+            MemoryLocation::GpuOnly,
+        )?);
         let constants = [params.constants(), scene.constants.clone()].concat();
         let made = make_pipelines(gpu, graph, linked, &plan, &constants, &parts.pipelines)?;
         change.built = made.built;
         change.kept = made.pipelines.len() - made.built;
-        let offered = Offered { gpu, graph, linked, plan: &plan, resources: &resources, scene, params: &params_buffer };
+        let offered = Offered {
+            gpu,
+            graph,
+            linked,
+            plan: &plan,
+            resources: &resources,
+            scene,
+            params: &params_buffer,
+        };
         let mut sets = Sets::new(gpu, &plan, linked)?;
-        let pipelines = made.keys.iter().map(|key| key.map(|k| made.pipelines[k].1.clone()));
-        let steps = plan.steps.iter().zip(pipelines).map(|(step, pipeline)| sets.step(&offered, step, pipeline));
+        let pipelines = made
+            .keys
+            .iter()
+            .map(|key| key.map(|k| made.pipelines[k].1.clone()));
+        let steps = plan
+            .steps
+            .iter()
+            .zip(pipelines)
+            .map(|(step, pipeline)| sets.step(&offered, step, pipeline));
         let mut program = Program {
             gpu: gpu.clone(),
             steps: steps.collect::<Result<_>>()?,
             _sets: sets,
-            names: graph.passes.iter().map(|p| p.value.name.value.clone()).collect(),
+            names: graph
+                .passes
+                .iter()
+                .map(|p| p.value.name.value.clone())
+                .collect(),
             pipelines: made.pipelines,
             resting: schedule.ends[1].clone(),
             change,
@@ -171,15 +196,31 @@ impl Program {
     /// Gives every new image its first layout and zeroes what is new, so that first frames are like any other.
     fn initialise(&mut self, parts: &Parts) -> Result<()> {
         let dst = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
-        for layout in self.resting.iter_mut().filter(|l| **l == vk::ImageLayout::UNDEFINED) {
+        for layout in self
+            .resting
+            .iter_mut()
+            .filter(|l| **l == vk::ImageLayout::UNDEFINED)
+        {
             *layout = dst;
         }
         // What is transient is begun by every frame.
-        let buffers = self.resources.buffers.iter().zip(&self.plan.buffers).filter(|(_, plan)| !plan.transient);
-        let buffers: Vec<&Arc<Buffer>> =
-            buffers.flat_map(|(copies, _)| copies.iter().flatten()).filter(|b| !parts.holds_buffer(b)).collect();
-        let is_new = |image: &Arc<Image>, t: usize| !self.plan.textures[t].transient && !parts.holds_image(image);
-        let images: Vec<_> = self.images().filter(|(t, image, _)| is_new(image, *t)).collect();
+        let buffers = self
+            .resources
+            .buffers
+            .iter()
+            .zip(&self.plan.buffers)
+            .filter(|(_, plan)| !plan.transient);
+        let buffers: Vec<&Arc<Buffer>> = buffers
+            .flat_map(|(copies, _)| copies.iter().flatten())
+            .filter(|b| !parts.holds_buffer(b))
+            .collect();
+        let is_new = |image: &Arc<Image>, t: usize| {
+            !self.plan.textures[t].transient && !parts.holds_image(image)
+        };
+        let images: Vec<_> = self
+            .images()
+            .filter(|(t, image, _)| is_new(image, *t))
+            .collect();
         // A submission waits for the frames that run: nothing is submitted for nothing.
         if buffers.is_empty() && images.is_empty() {
             return Ok(());
@@ -246,12 +287,28 @@ impl Program {
 
     /// Sends what changed, and the commands of a frame behind it: those of the last one that did the same, if there is one.
     /// Recording takes most of the time of a CPU's frame.
-    fn submit(&self, slot: &mut Slot, frame: Frame, updates: &[Update], parity: usize) -> Result<()> {
+    fn submit(
+        &self,
+        slot: &mut Slot,
+        frame: Frame,
+        updates: &[Update],
+        parity: usize,
+    ) -> Result<()> {
         slot.stamped = self.runs(&frame.awake);
-        let Slot { commands, recorded, stamped, readback, handed, .. } = slot;
+        let Slot {
+            commands,
+            recorded,
+            stamped,
+            readback,
+            handed,
+            ..
+        } = slot;
         let recorder = self.recorder();
         let recorded = &mut recorded[parity];
-        let wanted = Recorded { frame, first: Some(self.ran).filter(|ran| *ran < 2) };
+        let wanted = Recorded {
+            frame,
+            first: Some(self.ran).filter(|ran| *ran < 2),
+        };
         let recording = match recorded.take() {
             Some((last, recording)) if last == wanted => recording,
             _ => Recording::new(commands, |commands| {
@@ -273,11 +330,22 @@ impl Program {
 
     /// All images, with their textures' numbers and where their mips are among the places.
     pub(super) fn images(&self) -> impl Iterator<Item = (usize, &Arc<Image>, Range<usize>)> {
-        self.resources.images.iter().enumerate().flat_map(move |(t, copies)| {
-            let mips = (0, self.plan.textures[t].mips);
-            let places = move |copy| self.schedule.places.of_copy(Res::Texture(t, false), mips, copy);
-            copies.iter().enumerate().filter_map(move |(c, image)| Some((t, image.as_ref()?, places(c))))
-        })
+        self.resources
+            .images
+            .iter()
+            .enumerate()
+            .flat_map(move |(t, copies)| {
+                let mips = (0, self.plan.textures[t].mips);
+                let places = move |copy| {
+                    self.schedule
+                        .places
+                        .of_copy(Res::Texture(t, false), mips, copy)
+                };
+                copies
+                    .iter()
+                    .enumerate()
+                    .filter_map(move |(c, image)| Some((t, image.as_ref()?, places(c))))
+            })
     }
 
     fn recorder(&self) -> Recorder<'_> {
@@ -319,9 +387,17 @@ impl Program {
 
     /// Whether all passes that gather over frames rest: further frames make the same picture until something changes.
     pub fn is_at_rest(&self) -> bool {
-        let frames = self.plan.settling.iter().fold(0, |sum: u32, group| sum.saturating_add(group.frames));
+        let frames = self
+            .plan
+            .settling
+            .iter()
+            .fold(0, |sum: u32, group| sum.saturating_add(group.frames));
         let declared = frames > 0 && frames == self.plan.convergence.changed;
-        declared && self.contents.as_ref().is_some_and(|contents| contents.is_at_rest(&self.plan))
+        declared
+            && self
+                .contents
+                .as_ref()
+                .is_some_and(|contents| contents.is_at_rest(&self.plan))
     }
 
     /// What frames do.
@@ -332,13 +408,21 @@ impl Program {
     /// What the next frame does.
     fn work(&mut self, updates: &[Update], odd: bool) -> Frame {
         let Some(contents) = &mut self.contents else {
-            return Frame { awake: vec![true; self.plan.steps.len()], keeping: Vec::new() };
+            return Frame {
+                awake: vec![true; self.plan.steps.len()],
+                keeping: Vec::new(),
+            };
         };
         for Update { buffer, at, bytes } in updates {
             if Arc::ptr_eq(buffer, &self.params) {
                 contents.update("params", None, bytes);
             }
-            for (name, _) in self.scene.buffers.iter().filter(|(_, b)| Arc::ptr_eq(b, buffer)) {
+            for (name, _) in self
+                .scene
+                .buffers
+                .iter()
+                .filter(|(_, b)| Arc::ptr_eq(b, buffer))
+            {
                 contents.update(name, *at, bytes);
             }
         }
@@ -348,7 +432,11 @@ impl Program {
     /// Whether a step of each pass runs, in the order of `starts`.
     fn runs(&self, awake: &[bool]) -> Vec<bool> {
         let ends = self.starts.iter().skip(1).copied().chain([awake.len()]);
-        self.starts.iter().zip(ends).map(|(start, end)| awake[*start..end].contains(&true)).collect()
+        self.starts
+            .iter()
+            .zip(ends)
+            .map(|(start, end)| awake[*start..end].contains(&true))
+            .collect()
     }
 
     /// Whether frames copy the shown texture to the CPU, from the next one on; they do at first.
@@ -379,9 +467,21 @@ impl Program {
     fn readback(&self, slot: &mut Slot) -> Result<()> {
         let size = self.shown_bytes();
         slot.readback.1 = self.reads_back && size > 0;
-        if slot.readback.1 && slot.readback.0.as_ref().is_none_or(|b| b.size != size.max(16).next_multiple_of(4)) {
+        if slot.readback.1
+            && slot
+                .readback
+                .0
+                .as_ref()
+                .is_none_or(|b| b.size != size.max(16).next_multiple_of(4))
+        {
             let usage = vk::BufferUsageFlags::TRANSFER_DST;
-            slot.readback.0 = Some(Buffer::new(&self.gpu, "shown", size, usage, MemoryLocation::GpuToCpu)?);
+            slot.readback.0 = Some(Buffer::new(
+                &self.gpu,
+                "shown",
+                size,
+                usage,
+                MemoryLocation::GpuToCpu,
+            )?);
         }
         Ok(())
     }
@@ -402,8 +502,12 @@ impl Program {
     pub fn finish_to(&mut self, unfinished: u64) -> Result<Vec<FrameTimes>> {
         let mut list = Vec::new();
         for age in (unfinished + 1..=FRAMES_IN_FLIGHT as u64).rev() {
-            let Some(frame) = self.frame.checked_sub(age) else { continue };
-            list.extend(self.finish(usize::try_from(frame % FRAMES_IN_FLIGHT as u64).unwrap_or(0))?);
+            let Some(frame) = self.frame.checked_sub(age) else {
+                continue;
+            };
+            list.extend(
+                self.finish(usize::try_from(frame % FRAMES_IN_FLIGHT as u64).unwrap_or(0))?,
+            );
         }
         Ok(list)
     }
@@ -418,17 +522,44 @@ impl Program {
 
     fn finish(&mut self, slot: usize) -> Result<Option<FrameTimes>> {
         let shown = usize::try_from(self.shown_bytes()).unwrap_or(0);
-        let Slot { commands, cpu_ms, stamped, readback, handed, .. } = &mut self.slots[slot];
-        let Some(ticks) = commands.wait()? else { return Ok(None) };
+        let Slot {
+            commands,
+            cpu_ms,
+            stamped,
+            readback,
+            handed,
+            ..
+        } = &mut self.slots[slot];
+        let Some(ticks) = commands.wait()? else {
+            return Ok(None);
+        };
         let ms = |a: u64, b: u64| self.gpu.info.ms_between(a, b);
-        let passes = self.starts.iter().map(|s| self.plan.steps[*s].pass).zip(stamped.iter());
+        let passes = self
+            .starts
+            .iter()
+            .map(|s| self.plan.steps[*s].pass)
+            .zip(stamped.iter());
         let mut spans = ticks.windows(2).map(|t| ms(t[0], t[1]));
         // Devices without timestamps say nothing.
         let timed = passes.clone().filter(|_| !ticks.is_empty());
         Ok(Some(FrameTimes {
             asleep: passes.filter(|p| !p.1).map(|p| p.0).collect(),
-            passes: timed.map(|(pass, ran)| (pass, if *ran { spans.next().unwrap_or(0.0) } else { 0.0 })).collect(),
-            gpu_ms: ticks.first().zip(ticks.last()).map_or(0.0, |(a, b)| ms(*a, *b)),
+            passes: timed
+                .map(|(pass, ran)| {
+                    (
+                        pass,
+                        if *ran {
+                            spans.next().unwrap_or(0.0)
+                        } else {
+                            0.0
+                        },
+                    )
+                })
+                .collect(),
+            gpu_ms: ticks
+                .first()
+                .zip(ticks.last())
+                .map_or(0.0, |(a, b)| ms(*a, *b)),
             cpu_ms: *cpu_ms,
             picture: readback
                 .0

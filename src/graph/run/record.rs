@@ -29,10 +29,20 @@ pub(super) struct Recorder<'a> {
 }
 
 impl Recorder<'_> {
-    pub fn record(&self, commands: &mut Commands<'_>, parity: usize, frame: &Frame, stamped: &[bool]) {
+    pub fn record(
+        &self,
+        commands: &mut Commands<'_>,
+        parity: usize,
+        frame: &Frame,
+        stamped: &[bool],
+    ) {
         let mut labelled = false;
         for (i, step) in self.plan.steps.iter().enumerate() {
-            if self.starts.binary_search(&i).is_ok_and(|start| stamped[start]) {
+            if self
+                .starts
+                .binary_search(&i)
+                .is_ok_and(|start| stamped[start])
+            {
                 if labelled {
                     commands.end_label();
                 }
@@ -45,7 +55,13 @@ impl Recorder<'_> {
             if frame.awake[i] {
                 self.record_step(commands, step, &self.steps[i], parity);
             }
-            for (group, _) in self.plan.settling.iter().zip(&frame.keeping).filter(|(_, keeps)| **keeps) {
+            for (group, _) in self
+                .plan
+                .settling
+                .iter()
+                .zip(&frame.keeping)
+                .filter(|(_, keeps)| **keeps)
+            {
                 if group.steps.last() == Some(&i) {
                     self.keep(commands, &group.kept, i, parity);
                 }
@@ -66,7 +82,9 @@ impl Recorder<'_> {
         to_host: Option<&Buffer>,
         handed: Option<&Buffer>,
     ) {
-        let Ok(image) = self.resources.image(self.plan, texture, false, parity) else { return };
+        let Ok(image) = self.resources.image(self.plan, texture, false, parity) else {
+            return;
+        };
         let place = self.place(texture, (false, 0), parity);
         let layout = match self.schedule.ends[parity][place] {
             vk::ImageLayout::UNDEFINED => self.resting[place],
@@ -82,7 +100,10 @@ impl Recorder<'_> {
 
     /// Brings what the frame before left into this frame's copies, after a step. Rare, or thrown away: it waits for all.
     fn keep(&self, commands: &mut Commands<'_>, kept: &[Res], step: usize, parity: usize) {
-        let (src, dst) = (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
+        let (src, dst) = (
+            vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+            vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+        );
         commands.full_barrier();
         for res in kept {
             match *res {
@@ -94,11 +115,17 @@ impl Recorder<'_> {
                 }
                 Res::Texture(t, _) => {
                     let image = |last: bool| self.resources.image(self.plan, t, last, parity);
-                    let (Ok(last), Ok(new)) = (image(true), image(false)) else { continue };
-                    let layouts = |history: bool, mip: u32| self.layout_after(step, t, (history, mip), parity);
+                    let (Ok(last), Ok(new)) = (image(true), image(false)) else {
+                        continue;
+                    };
+                    let layouts = |history: bool, mip: u32| {
+                        self.layout_after(step, t, (history, mip), parity)
+                    };
                     let mips = 0..self.plan.textures[t].mips;
-                    let there: Vec<_> =
-                        mips.clone().map(|mip| (layouts(true, mip), layouts(false, mip), mip)).collect();
+                    let there: Vec<_> = mips
+                        .clone()
+                        .map(|mip| (layouts(true, mip), layouts(false, mip), mip))
+                        .collect();
                     for (of_last, of_new, mip) in &there {
                         commands.barrier(None, &[(&**last, relayout(last, *of_last, src, *mip))]);
                         commands.barrier(None, &[(&**new, relayout(new, *of_new, dst, *mip))]);
@@ -115,14 +142,32 @@ impl Recorder<'_> {
     }
 
     /// The layout of a mip of a texture's copy between a step and the next.
-    fn layout_after(&self, step: usize, t: usize, (history, mip): (bool, u32), parity: usize) -> vk::ImageLayout {
+    fn layout_after(
+        &self,
+        step: usize,
+        t: usize,
+        (history, mip): (bool, u32),
+        parity: usize,
+    ) -> vk::ImageLayout {
         let mut before = self.plan.steps[..=step].iter().rev().flat_map(|s| &s.uses);
-        let used = before.find(|u| u.res == Res::Texture(t, history) && (u.mips.0..u.mips.0 + u.mips.1).contains(&mip));
-        used.map_or(self.resting[self.place(t, (history, mip), parity)], |u| u.layout)
+        let used = before.find(|u| {
+            u.res == Res::Texture(t, history) && (u.mips.0..u.mips.0 + u.mips.1).contains(&mip)
+        });
+        used.map_or(self.resting[self.place(t, (history, mip), parity)], |u| {
+            u.layout
+        })
     }
 
     fn place(&self, texture: usize, (last, mip): (bool, u32), parity: usize) -> usize {
-        self.schedule.places.of(self.plan, Res::Texture(texture, last), (mip, 1), parity == 1).start
+        self.schedule
+            .places
+            .of(
+                self.plan,
+                Res::Texture(texture, last),
+                (mip, 1),
+                parity == 1,
+            )
+            .start
     }
 
     fn barriers(&self, commands: &mut Commands<'_>, list: &[Barrier]) {
@@ -142,8 +187,13 @@ impl Recorder<'_> {
                     m.dst_access_mask |= b.dst.1;
                 }
                 Res::Texture(t, copy) => {
-                    let Some(image) = &self.resources.images[t][usize::from(copy)] else { continue };
-                    images.push((&**image, image_barrier(image, b.mips, b.src, b.dst, b.layouts)));
+                    let Some(image) = &self.resources.images[t][usize::from(copy)] else {
+                        continue;
+                    };
+                    images.push((
+                        &**image,
+                        image_barrier(image, b.mips, b.src, b.dst, b.layouts),
+                    ));
                 }
             }
         }
@@ -151,7 +201,10 @@ impl Recorder<'_> {
     }
 
     fn record_step(&self, commands: &mut Commands<'_>, step: &Step, gpu: &StepGpu, parity: usize) {
-        let raster = matches!(step.work, Work::Scene(_) | Work::Fullscreen | Work::DrawIndirect(..));
+        let raster = matches!(
+            step.work,
+            Work::Scene(_) | Work::Fullscreen | Work::DrawIndirect(..)
+        );
         if raster {
             let color: Vec<_> = step
                 .color

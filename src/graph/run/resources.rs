@@ -3,7 +3,9 @@
 use super::parts::{Change, Copies, Parts};
 use crate::graph::definition::{Graph, Res};
 use crate::graph::plan::{Plan, Transient, pack};
-use crate::vulkan::{Bare, Buffer, Format, Gpu, Image, ImageDesc, Result, VulkanError, lay_together, vk};
+use crate::vulkan::{
+    Bare, Buffer, Format, Gpu, Image, ImageDesc, Result, VulkanError, lay_together, vk,
+};
 use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
 
@@ -26,38 +28,64 @@ const BUFFER_USAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
 
 impl Resources {
     /// A texture's image in frames of a parity; last frame's, or this one's.
-    pub fn image(&self, plan: &Plan, texture: usize, last: bool, parity: usize) -> Result<&Arc<Image>> {
+    pub fn image(
+        &self,
+        plan: &Plan,
+        texture: usize,
+        last: bool,
+        parity: usize,
+    ) -> Result<&Arc<Image>> {
         let copy = plan.copy_of(Res::Texture(texture, last), parity == 1);
-        self.images[texture][copy].as_ref().ok_or_else(|| VulkanError::Code {
-            what: format!("find texture {texture} of the plan"),
-            code: vk::Result::ERROR_UNKNOWN,
-        })
+        self.images[texture][copy]
+            .as_ref()
+            .ok_or_else(|| VulkanError::Code {
+                what: format!("find texture {texture} of the plan"),
+                code: vk::Result::ERROR_UNKNOWN,
+            })
     }
 
     /// A buffer in frames of a parity; last frame's, or this one's.
-    pub fn buffer(&self, plan: &Plan, buffer: usize, last: bool, parity: usize) -> Option<&Arc<Buffer>> {
+    pub fn buffer(
+        &self,
+        plan: &Plan,
+        buffer: usize,
+        last: bool,
+        parity: usize,
+    ) -> Option<&Arc<Buffer>> {
         self.buffers[buffer][plan.copy_of(Res::Buffer(buffer, last), parity == 1)].as_ref()
     }
 
     /// Takes all transient resources from parts, if these are the same ones at the same times; else none.
-    fn take_over(&mut self, graph: &Graph, plan: &Plan, parts: &Parts, transients: &[(String, Transient)]) -> bool {
-        let Some(shared_bytes) = parts.shared_by(transients) else { return false };
+    fn take_over(
+        &mut self,
+        graph: &Graph,
+        plan: &Plan,
+        parts: &Parts,
+        transients: &[(String, Transient)],
+    ) -> bool {
+        let Some(shared_bytes) = parts.shared_by(transients) else {
+            return false;
+        };
         let (mut images, mut buffers) = (Vec::new(), Vec::new());
         for (name, transient) in transients {
             let found = match transient.res {
-                Res::Texture(t, _) => {
-                    parts.image(name, 0, &image_desc(graph, plan, t, 0)).map(|image| images.push((t, image)))
-                }
-                Res::Buffer(b, _) => {
-                    parts.buffer(name, 0, plan.buffers[b].size).map(|buffer| buffers.push((b, buffer)))
-                }
+                Res::Texture(t, _) => parts
+                    .image(name, 0, &image_desc(graph, plan, t, 0))
+                    .map(|image| images.push((t, image))),
+                Res::Buffer(b, _) => parts
+                    .buffer(name, 0, plan.buffers[b].size)
+                    .map(|buffer| buffers.push((b, buffer))),
             };
             if found.is_none() {
                 return false;
             }
         }
-        images.into_iter().for_each(|(t, image)| self.images[t][0] = Some(image));
-        buffers.into_iter().for_each(|(b, buffer)| self.buffers[b][0] = Some(buffer));
+        images
+            .into_iter()
+            .for_each(|(t, image)| self.images[t][0] = Some(image));
+        buffers
+            .into_iter()
+            .for_each(|(b, buffer)| self.buffers[b][0] = Some(buffer));
         self.shared_bytes = shared_bytes;
         true
     }
@@ -71,7 +99,9 @@ impl Resources {
     ) -> Result<()> {
         let bare = |(name, transient): &(String, Transient)| match transient.res {
             Res::Texture(t, _) => Image::bare(gpu, image_desc(graph, plan, t, 0)).map(Bare::Image),
-            Res::Buffer(b, _) => Buffer::bare(gpu, name, plan.buffers[b].size, BUFFER_USAGE).map(Bare::Buffer),
+            Res::Buffer(b, _) => {
+                Buffer::bare(gpu, name, plan.buffers[b].size, BUFFER_USAGE).map(Bare::Buffer)
+            }
         };
         let list: Vec<Bare> = transients.iter().map(bare).collect::<Result<_>>()?;
         if list.is_empty() {
@@ -84,8 +114,12 @@ impl Resources {
         self.shared_bytes = size;
         for ((bare, _), transient) in list.into_iter().zip(&plan.transients) {
             match (bare, transient.res) {
-                (Bare::Image(image), Res::Texture(t, _)) => self.images[t][0] = Some(Arc::new(image)),
-                (Bare::Buffer(buffer), Res::Buffer(b, _)) => self.buffers[b][0] = Some(Arc::new(buffer)),
+                (Bare::Image(image), Res::Texture(t, _)) => {
+                    self.images[t][0] = Some(Arc::new(image))
+                }
+                (Bare::Buffer(buffer), Res::Buffer(b, _)) => {
+                    self.buffers[b][0] = Some(Arc::new(buffer))
+                }
                 _ => {}
             }
         }
@@ -95,7 +129,10 @@ impl Resources {
 
 /// The transient resources of a plan by name.
 pub(super) fn named(graph: &Graph, plan: &Plan) -> Vec<(String, Transient)> {
-    plan.transients.iter().map(|t| (graph.name_of(t.res).to_string(), t.clone())).collect()
+    plan.transients
+        .iter()
+        .map(|t| (graph.name_of(t.res).to_string(), t.clone()))
+        .collect()
 }
 
 /// Makes them, except what fits among the parts of another program.
@@ -108,8 +145,14 @@ pub(super) fn make(
 ) -> Result<Resources> {
     // What another program left in it may stay where somebody writes it, and nobody who would is off.
     let may_stay = |res: Res| {
-        let written = plan.steps.iter().flat_map(|s| &s.uses).any(|u| u.write && u.res.current() == res);
-        written && !plan.missing.iter().any(|r| r.current() == res) && !parts.is_shared(graph.name_of(res))
+        let written = plan
+            .steps
+            .iter()
+            .flat_map(|s| &s.uses)
+            .any(|u| u.write && u.res.current() == res);
+        written
+            && !plan.missing.iter().any(|r| r.current() == res)
+            && !parts.is_shared(graph.name_of(res))
     };
     let mut made = Resources::default();
     for ((t, texture), (name, _)) in plan.textures.iter().enumerate().zip(&graph.textures) {
@@ -124,25 +167,49 @@ pub(super) fn make(
     }
     for ((b, buffer), (name, _)) in plan.buffers.iter().enumerate().zip(&graph.buffers) {
         let stays = may_stay(Res::Buffer(b, false));
-        made.buffers.push(copies(buffer.used && !buffer.transient, buffer.history, |c| {
-            let kept = parts.buffer(name, c, buffer.size).filter(|_| stays);
-            change.resized += usize::from(kept.is_none() && parts.had(name));
-            let new = || Buffer::new(gpu, name, buffer.size, BUFFER_USAGE, MemoryLocation::GpuOnly).map(Arc::new);
-            kept.map_or_else(new, Ok)
-        })?);
+        made.buffers.push(copies(
+            buffer.used && !buffer.transient,
+            buffer.history,
+            |c| {
+                let kept = parts.buffer(name, c, buffer.size).filter(|_| stays);
+                change.resized += usize::from(kept.is_none() && parts.had(name));
+                let new = || {
+                    Buffer::new(
+                        gpu,
+                        name,
+                        buffer.size,
+                        BUFFER_USAGE,
+                        MemoryLocation::GpuOnly,
+                    )
+                    .map(Arc::new)
+                };
+                kept.map_or_else(new, Ok)
+            },
+        )?);
     }
     let transients = named(graph, plan);
     if !made.take_over(graph, plan, parts, &transients) {
-        change.resized += transients.iter().filter(|(name, _)| parts.had(name)).count();
+        change.resized += transients
+            .iter()
+            .filter(|(name, _)| parts.had(name))
+            .count();
         made.make_transients(gpu, graph, plan, &transients)?;
     }
     Ok(made)
 }
 
 /// The copies of a resource that has memory of its own.
-fn copies<T>(own: bool, history: bool, mut make: impl FnMut(usize) -> Result<Arc<T>>) -> Result<Copies<T>> {
+fn copies<T>(
+    own: bool,
+    history: bool,
+    mut make: impl FnMut(usize) -> Result<Arc<T>>,
+) -> Result<Copies<T>> {
     let mut copies = [None, None];
-    for (c, slot) in copies.iter_mut().enumerate().take(usize::from(own) * (1 + usize::from(history))) {
+    for (c, slot) in copies
+        .iter_mut()
+        .enumerate()
+        .take(usize::from(own) * (1 + usize::from(history)))
+    {
         *slot = Some(make(c)?);
     }
     Ok(copies)
@@ -152,13 +219,20 @@ fn image_desc(graph: &Graph, plan: &Plan, t: usize, copy: usize) -> ImageDesc {
     let ((name, decl), texture) = (&graph.textures[t], &plan.textures[t]);
     let views = decl.value.views.0.iter();
     ImageDesc {
-        name: if copy == 0 { name.clone() } else { format!("{name} (other frame)") },
+        name: if copy == 0 {
+            name.clone()
+        } else {
+            format!("{name} (other frame)")
+        },
         extent: texture.extent,
         volume: texture.volume,
         layers: texture.layers,
         mips: texture.mips,
         format: texture.format.vk,
-        views: views.filter_map(|v| Format::named(&v.value)).map(|f| f.vk).collect(),
+        views: views
+            .filter_map(|v| Format::named(&v.value))
+            .map(|f| f.vk)
+            .collect(),
         usage: texture.usage,
     }
 }

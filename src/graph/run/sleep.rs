@@ -14,7 +14,17 @@ use std::collections::BTreeSet;
 use std::hash::{BuildHasher, Hash, Hasher};
 
 /// What a frame does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, clap::ValueEnum)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    serde::Serialize,
+    serde::Deserialize,
+    clap::ValueEnum,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum Redo {
     /// All passes run.
@@ -138,7 +148,10 @@ impl Contents {
             let reads: BTreeSet<Reads> = bound
                 .filter_map(|(bound, case)| match bound.cases[*case].target {
                     Target::External(external) => {
-                        let bytes = bound.reads.clone().filter(|_| bound.resource == Resource::Uniform);
+                        let bytes = bound
+                            .reads
+                            .clone()
+                            .filter(|_| bound.resource == Resource::Uniform);
                         Some(Reads { external, bytes })
                     }
                     _ => None,
@@ -147,21 +160,47 @@ impl Contents {
             reads
         };
         let of_steps: Vec<BTreeSet<Reads>> = plan.steps.iter().map(read_by).collect();
-        let reads: Vec<Reads> = of_steps.iter().flatten().cloned().collect::<BTreeSet<_>>().into_iter().collect();
+        let reads: Vec<Reads> = of_steps
+            .iter()
+            .flatten()
+            .cloned()
+            .collect::<BTreeSet<_>>()
+            .into_iter()
+            .collect();
         let number = |r: &Reads| reads.binary_search(r).unwrap_or(0);
-        let of_steps: Vec<Vec<usize>> = of_steps.iter().map(|list| list.iter().map(number).collect()).collect();
+        let of_steps: Vec<Vec<usize>> = of_steps
+            .iter()
+            .map(|list| list.iter().map(number).collect())
+            .collect();
         let places = Places::new(plan);
         let flows = [false, true].map(|odd| Flow::new(plan, &of_steps, &places, odd));
         let still = plan.settling.iter().map(|group| {
             let mut own = vec![false; places.count];
-            let written =
-                |flow: &Flow| group.ring.iter().flat_map(|i| &flow.steps[*i].writes).map(|w| w.to.part).collect();
-            flows.iter().flat_map(|flow| -> Vec<usize> { written(flow) }).for_each(|part| own[part] = true);
-            Still { own, inputs: Vec::new(), frames: 0 }
+            let written = |flow: &Flow| {
+                group
+                    .ring
+                    .iter()
+                    .flat_map(|i| &flow.steps[*i].writes)
+                    .map(|w| w.to.part)
+                    .collect()
+            };
+            flows
+                .iter()
+                .flat_map(|flow| -> Vec<usize> { written(flow) })
+                .for_each(|part| own[part] = true);
+            Still {
+                own,
+                inputs: Vec::new(),
+                frames: 0,
+            }
         });
         let unknown = |i| {
             let id = hashed(("unknown", i));
-            Content { id, base: id, stores: Vec::new() }
+            Content {
+                id,
+                base: id,
+                stores: Vec::new(),
+            }
         };
         Contents {
             held: (0..places.count).map(unknown).collect(),
@@ -175,11 +214,18 @@ impl Contents {
 
     /// New bytes of an external resource or of its part at an offset, from the next frame on.
     pub(super) fn update(&mut self, name: &str, at: Option<u64>, bytes: &[u8]) {
-        let Some(external) = EXTERNALS.iter().position(|e| e.name == name) else { return };
+        let Some(external) = EXTERNALS.iter().position(|e| e.name == name) else {
+            return;
+        };
         self.externals[external] = match (at, EXTERNALS[external].kind) {
             // What was sent before is still in the other parts. The same bytes again count as others.
             (Some(at), _) => {
-                let all = [&self.externals[external], at.to_ne_bytes().as_slice(), bytes].concat();
+                let all = [
+                    &self.externals[external],
+                    at.to_ne_bytes().as_slice(),
+                    bytes,
+                ]
+                .concat();
                 hashed(&all).to_ne_bytes().to_vec()
             }
             (None, ExternalKind::Uniform) => bytes.to_vec(),
@@ -188,10 +234,18 @@ impl Contents {
         let known = &self.externals[external];
         let uncounted = (name == "camera").then(|| {
             let mut bytes = known.clone();
-            bytes.get_mut(CAMERA_COUNTS).into_iter().for_each(|counts| counts.fill(0));
+            bytes
+                .get_mut(CAMERA_COUNTS)
+                .into_iter()
+                .for_each(|counts| counts.fill(0));
             bytes
         });
-        for (reads, ids) in self.reads.iter().zip(&mut self.inputs).filter(|(reads, _)| reads.external == external) {
+        for (reads, ids) in self
+            .reads
+            .iter()
+            .zip(&mut self.inputs)
+            .filter(|(reads, _)| reads.external == external)
+        {
             let id = reads.id(known);
             *ids = [id, uncounted.as_ref().map_or(id, |bytes| reads.id(bytes))];
         }
@@ -201,38 +255,65 @@ impl Contents {
     /// work too, and what they leave is thrown away: pictures are the same, and times are of all work.
     pub(super) fn frame(&mut self, plan: &Plan, odd: bool, redo: Redo) -> Frame {
         let flow = &self.flows[usize::from(odd)];
-        let mut resting: Vec<bool> =
-            plan.settling.iter().zip(&self.still).map(|(group, still)| still.frames >= group.frames).collect();
+        let mut resting: Vec<bool> = plan
+            .settling
+            .iter()
+            .zip(&self.still)
+            .map(|(group, still)| still.frames >= group.frames)
+            .collect();
         let walk = loop {
             let walk = self.walk(plan, flow, &resting);
             // A change before the last of them wakes them in this frame, a later one in the next.
             let is_woken = |k: usize| {
                 let group = &plan.settling[k];
-                let before = group.ring.iter().take_while(|i| Some(*i) <= group.steps.last()).count();
+                let before = group
+                    .ring
+                    .iter()
+                    .take_while(|i| Some(*i) <= group.steps.last())
+                    .count();
                 walk.inputs[k][..before] != self.still[k].inputs[..before]
             };
-            let woken: Vec<usize> = (0..resting.len()).filter(|k| resting[*k] && is_woken(*k)).collect();
+            let woken: Vec<usize> = (0..resting.len())
+                .filter(|k| resting[*k] && is_woken(*k))
+                .collect();
             if woken.is_empty() {
                 break walk;
             }
             woken.iter().for_each(|k| resting[*k] = false);
         };
         let frame = match redo {
-            Redo::All => Frame { awake: vec![true; plan.steps.len()], keeping: resting },
+            Redo::All => Frame {
+                awake: vec![true; plan.steps.len()],
+                keeping: resting,
+            },
             Redo::Changed => {
-                let is_new = |part: usize| !flow.transient[part] && walk.now[part].id != self.held[part].id;
-                let keeps =
-                    |(kept, rests): (&Vec<(usize, usize)>, &bool)| *rests && kept.iter().any(|(new, _)| is_new(*new));
+                let is_new =
+                    |part: usize| !flow.transient[part] && walk.now[part].id != self.held[part].id;
+                let keeps = |(kept, rests): (&Vec<(usize, usize)>, &bool)| {
+                    *rests && kept.iter().any(|(new, _)| is_new(*new))
+                };
                 let mut rests = vec![false; plan.steps.len()];
-                for (group, _) in plan.settling.iter().zip(&resting).filter(|(_, resting)| **resting) {
+                for (group, _) in plan
+                    .settling
+                    .iter()
+                    .zip(&resting)
+                    .filter(|(_, resting)| **resting)
+                {
                     group.steps.iter().for_each(|i| rests[*i] = true);
                 }
                 let keeping = flow.kept.iter().zip(&resting).map(keeps).collect();
-                Frame { awake: flow.awake(&walk.is_held, &rests, is_new), keeping }
+                Frame {
+                    awake: flow.awake(&walk.is_held, &rests, is_new),
+                    keeping,
+                }
             }
         };
         for (still, inputs) in self.still.iter_mut().zip(walk.inputs) {
-            still.frames = if still.inputs == inputs { still.frames.saturating_add(1) } else { 0 };
+            still.frames = if still.inputs == inputs {
+                still.frames.saturating_add(1)
+            } else {
+                0
+            };
             still.inputs = inputs;
         }
         self.held = walk.now;
@@ -241,7 +322,10 @@ impl Contents {
 
     /// Whether every group of steps that settles rests from the next frame on, unless something changes.
     pub(super) fn is_at_rest(&self, plan: &Plan) -> bool {
-        plan.settling.iter().zip(&self.still).all(|(group, still)| still.frames >= group.frames)
+        plan.settling
+            .iter()
+            .zip(&self.still)
+            .all(|(group, still)| still.frames >= group.frames)
     }
 
     fn walk(&self, plan: &Plan, flow: &Flow, resting: &[bool]) -> Walk {
@@ -249,13 +333,16 @@ impl Contents {
         let mut inputs: Vec<Vec<u64>> = vec![Vec::new(); plan.settling.len()];
         let mut is_held = Vec::with_capacity(flow.steps.len());
         for (i, step) in flow.steps.iter().enumerate() {
-            let there = |r: &Part| !flow.transient[r.part] && now[r.part].id == self.held[r.part].id;
+            let there =
+                |r: &Part| !flow.transient[r.part] && now[r.part].id == self.held[r.part].id;
             is_held.push(step.reads.iter().map(there).collect());
             let mut rests = false;
             for (k, (group, still)) in plan.settling.iter().zip(&self.still).enumerate() {
                 if group.ring.binary_search(&i).is_ok() {
                     let mut hasher = IDS.build_hasher();
-                    step.externals.iter().for_each(|r| self.inputs[*r][1].hash(&mut hasher));
+                    step.externals
+                        .iter()
+                        .for_each(|r| self.inputs[*r][1].hash(&mut hasher));
                     let others = step.reads.iter().filter(|r| !still.own[r.part]);
                     others.for_each(|r| now[r.part].id.hash(&mut hasher));
                     inputs[k].push(hasher.finish());
@@ -263,7 +350,9 @@ impl Contents {
                 if resting[k] && group.steps.contains(&i) {
                     rests = true;
                     if group.steps.last() == Some(&i) {
-                        flow.kept[k].iter().for_each(|(new, last)| now[*new] = now[*last].clone());
+                        flow.kept[k]
+                            .iter()
+                            .for_each(|(new, last)| now[*new] = now[*last].clone());
                     }
                 }
             }
@@ -272,19 +361,33 @@ impl Contents {
             }
             let mut hasher = IDS.build_hasher();
             i.hash(&mut hasher);
-            step.externals.iter().for_each(|r| self.inputs[*r][0].hash(&mut hasher));
-            step.reads.iter().for_each(|r| now[r.part].id.hash(&mut hasher));
+            step.externals
+                .iter()
+                .for_each(|r| self.inputs[*r][0].hash(&mut hasher));
+            step.reads
+                .iter()
+                .for_each(|r| now[r.part].id.hash(&mut hasher));
             let input = hasher.finish();
-            step.writes.iter().for_each(|w| now[w.to.part].write(hashed((input, w.what)), w.replaces));
+            step.writes
+                .iter()
+                .for_each(|w| now[w.to.part].write(hashed((input, w.what)), w.replaces));
         }
-        Walk { now, is_held, inputs }
+        Walk {
+            now,
+            is_held,
+            inputs,
+        }
     }
 }
 
 impl Reads {
     fn id(&self, bytes: &[u8]) -> u64 {
         let within = |(first, end): &(u32, u32)| bytes.get(*first as usize..*end as usize);
-        match self.bytes.as_ref().map(|list| list.iter().map(within).collect::<Option<Vec<_>>>()) {
+        match self
+            .bytes
+            .as_ref()
+            .map(|list| list.iter().map(within).collect::<Option<Vec<_>>>())
+        {
             Some(Some(parts)) => hashed(parts),
             _ => hashed(bytes),
         }
@@ -297,8 +400,17 @@ impl Flow {
         let mut lives = places.count;
         let mut steps = Vec::new();
         for (step, externals) in plan.steps.iter().zip(externals) {
-            let read = step.uses.iter().filter(|u| u.read).flat_map(|u| places.of(plan, u.res, u.mips, odd));
-            let reads = read.map(|part| Part { part, life: last[part] }).collect();
+            let read = step
+                .uses
+                .iter()
+                .filter(|u| u.read)
+                .flat_map(|u| places.of(plan, u.res, u.mips, odd));
+            let reads = read
+                .map(|part| Part {
+                    part,
+                    life: last[part],
+                })
+                .collect();
             let mut writes = Vec::new();
             for u in step.uses.iter().filter(|u| u.write) {
                 for (mip, part) in (u.mips.0..).zip(places.of(plan, u.res, u.mips, odd)) {
@@ -306,11 +418,22 @@ impl Flow {
                         last[part] = lives;
                         lives += 1;
                     }
-                    let to = Part { part, life: last[part] };
-                    writes.push(Write { to, replaces: u.overwrite || u.read, what: hashed((u.res, mip)) });
+                    let to = Part {
+                        part,
+                        life: last[part],
+                    };
+                    writes.push(Write {
+                        to,
+                        replaces: u.overwrite || u.read,
+                        what: hashed((u.res, mip)),
+                    });
                 }
             }
-            steps.push(StepFlow { externals: externals.clone(), reads, writes });
+            steps.push(StepFlow {
+                externals: externals.clone(),
+                reads,
+                writes,
+            });
         }
         let of = |res, mips| places.of(plan, res, mips, odd);
         let copies = |res: &Res| match *res {
@@ -320,23 +443,49 @@ impl Flow {
                 of(*res, mips).zip(of(Res::Texture(t, true), mips))
             }
         };
-        let kept = plan.settling.iter().map(|group| group.kept.iter().flat_map(copies).collect()).collect();
+        let kept = plan
+            .settling
+            .iter()
+            .map(|group| group.kept.iter().flat_map(copies).collect())
+            .collect();
         let mut transient = vec![false; places.count];
-        plan.transients.iter().flat_map(|t| of(t.res, (0, 1))).for_each(|part| transient[part] = true);
-        Flow { steps, last, lives, kept, transient }
+        plan.transients
+            .iter()
+            .flat_map(|t| of(t.res, (0, 1)))
+            .for_each(|part| transient[part] = true);
+        Flow {
+            steps,
+            last,
+            lives,
+            kept,
+            transient,
+        }
     }
 
     /// Steps that run: who writes a life that ends up changed, and who writes the lives that these read or write, unless that is
     /// there already. Of those that write a life all run or none, and where one life is written the last one is too, so that at
     /// each step that runs all is as ids say, and after the frame; but of what is transient nobody asks after the frame.
-    fn awake(&self, is_held: &[Vec<bool>], rests: &[bool], is_new: impl Fn(usize) -> bool) -> Vec<bool> {
+    fn awake(
+        &self,
+        is_held: &[Vec<bool>],
+        rests: &[bool],
+        is_new: impl Fn(usize) -> bool,
+    ) -> Vec<bool> {
         let (mut wanted, mut touched) = (vec![false; self.lives], vec![false; self.last.len()]);
         let mut awake = vec![false; self.steps.len()];
-        (0..self.last.len()).filter(|part| is_new(*part)).for_each(|part| wanted[self.last[part]] = true);
+        (0..self.last.len())
+            .filter(|part| is_new(*part))
+            .for_each(|part| wanted[self.last[part]] = true);
         loop {
             let mut more = false;
             // What is read was mostly written before.
-            for (i, step) in self.steps.iter().enumerate().rev().filter(|(i, _)| !rests[*i]) {
+            for (i, step) in self
+                .steps
+                .iter()
+                .enumerate()
+                .rev()
+                .filter(|(i, _)| !rests[*i])
+            {
                 if !awake[i] && step.writes.iter().any(|w| wanted[w.to.life]) {
                     (awake[i], more) = (true, true);
                     for w in &step.writes {
@@ -346,7 +495,12 @@ impl Flow {
                     }
                 }
                 if awake[i] {
-                    for (read, _) in step.reads.iter().zip(&is_held[i]).filter(|(r, held)| !**held || touched[r.part]) {
+                    for (read, _) in step
+                        .reads
+                        .iter()
+                        .zip(&is_held[i])
+                        .filter(|(r, held)| !**held || touched[r.part])
+                    {
                         more |= !std::mem::replace(&mut wanted[read.life], true);
                     }
                 }

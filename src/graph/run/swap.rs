@@ -11,13 +11,28 @@ use std::sync::Arc;
 impl Program {
     /// What a new program can take over. The program may run on while the new program is made.
     pub fn parts(&self, graph: &Graph) -> Parts {
-        let Resources { images, buffers, shared_bytes } = &self.resources;
-        let images = graph.textures.iter().zip(images).filter(|(_, i)| i[0].is_some());
-        let buffers = graph.buffers.iter().zip(buffers).zip(&self.plan.buffers).filter(|((_, b), _)| b[0].is_some());
+        let Resources {
+            images,
+            buffers,
+            shared_bytes,
+        } = &self.resources;
+        let images = graph
+            .textures
+            .iter()
+            .zip(images)
+            .filter(|(_, i)| i[0].is_some());
+        let buffers = graph
+            .buffers
+            .iter()
+            .zip(buffers)
+            .zip(&self.plan.buffers)
+            .filter(|((_, b), _)| b[0].is_some());
         Parts {
             pipelines: self.pipelines.clone(),
             images: images.map(|(t, i)| (t.0.clone(), i.clone())).collect(),
-            buffers: buffers.map(|((b, made), plan)| (b.0.clone(), (plan.size, made.clone()))).collect(),
+            buffers: buffers
+                .map(|((b, made), plan)| (b.0.clone(), (plan.size, made.clone())))
+                .collect(),
             transients: named(graph, &self.plan),
             shared_bytes: *shared_bytes,
         }
@@ -36,8 +51,13 @@ impl Program {
         let mut wanted = self.schedule.ends[before].clone();
         let mut barriers = Vec::new();
         // What is transient is taken out of any layout where it begins.
-        for (_, image, places) in self.images().filter(|(t, ..)| !self.plan.textures[*t].transient) {
-            let from = old.layouts_of(image).unwrap_or(&self.resting[places.clone()]);
+        for (_, image, places) in self
+            .images()
+            .filter(|(t, ..)| !self.plan.textures[*t].transient)
+        {
+            let from = old
+                .layouts_of(image)
+                .unwrap_or(&self.resting[places.clone()]);
             for (mip, (from, to)) in (0u32..).zip(from.iter().zip(&mut wanted[places])) {
                 if *to == vk::ImageLayout::UNDEFINED {
                     *to = *from;
@@ -58,6 +78,8 @@ impl Program {
 
     /// The layouts in which an image of this program rests, by mip.
     fn layouts_of(&self, image: &Arc<Image>) -> Option<&[vk::ImageLayout]> {
-        self.images().find(|(_, i, _)| Arc::ptr_eq(i, image)).map(|(.., places)| &self.resting[places])
+        self.images()
+            .find(|(_, i, _)| Arc::ptr_eq(i, image))
+            .map(|(.., places)| &self.resting[places])
     }
 }

@@ -18,7 +18,11 @@ pub struct Update {
 impl Update {
     /// All that counts, from the first byte on.
     pub fn all(buffer: &Arc<Buffer>, bytes: Vec<u8>) -> Update {
-        Update { buffer: buffer.clone(), at: None, bytes }
+        Update {
+            buffer: buffer.clone(),
+            at: None,
+            bytes,
+        }
     }
 }
 
@@ -33,11 +37,22 @@ pub(super) fn send(commands: &mut Commands<'_>, updates: &[Update]) {
                 .dst_access_mask(dst_access)
         };
         let (all, copy) = (Stages::ALL_COMMANDS, Stages::ALL_TRANSFER);
-        commands.barrier(Some(barrier(all, Access::empty(), copy, Access::TRANSFER_WRITE)), &[]);
+        commands.barrier(
+            Some(barrier(all, Access::empty(), copy, Access::TRANSFER_WRITE)),
+            &[],
+        );
         for Update { buffer, at, bytes } in updates {
             commands.update(buffer, at.unwrap_or(0), bytes);
         }
-        commands.barrier(Some(barrier(copy, Access::TRANSFER_WRITE, all, Access::MEMORY_READ)), &[]);
+        commands.barrier(
+            Some(barrier(
+                copy,
+                Access::TRANSFER_WRITE,
+                all,
+                Access::MEMORY_READ,
+            )),
+            &[],
+        );
     }
 }
 
@@ -87,6 +102,15 @@ pub(super) fn relayout(
     to: vk::ImageLayout,
     mip: u32,
 ) -> vk::ImageMemoryBarrier2<'static> {
-    let (src, dst) = (Access::MEMORY_WRITE, Access::MEMORY_READ | Access::MEMORY_WRITE);
-    image_barrier(image, (mip, 1), (Stages::ALL_COMMANDS, src), (Stages::ALL_COMMANDS, dst), (from, to))
+    let (src, dst) = (
+        Access::MEMORY_WRITE,
+        Access::MEMORY_READ | Access::MEMORY_WRITE,
+    );
+    image_barrier(
+        image,
+        (mip, 1),
+        (Stages::ALL_COMMANDS, src),
+        (Stages::ALL_COMMANDS, dst),
+        (from, to),
+    )
 }

@@ -18,7 +18,10 @@ pub fn table(comparison: &Comparison) -> String {
     }
     let _ = writeln!(out, "reference: {}", comparison.reference);
     if comparison.displayed {
-        let _ = writeln!(out, "Pictures for a display: all numbers, HDR-FLIP too, are of the displayed range 0 to 1.");
+        let _ = writeln!(
+            out,
+            "Pictures for a display: all numbers, HDR-FLIP too, are of the displayed range 0 to 1."
+        );
     }
     for part in &comparison.parts {
         block(&mut out, part, &comparison.pictures);
@@ -37,17 +40,25 @@ fn block(out: &mut String, part: &PartComparison, pictures: &[String]) {
     }
     if let (Some(relmse), Some(structure)) = (part.noise, part.structure_noise) {
         let (relmse, structure) = (short(relmse), short(structure));
-        let _ = writeln!(out, "  noise of the reference: relMSE {relmse}, structure {structure}");
+        let _ = writeln!(
+            out,
+            "  noise of the reference: relMSE {relmse}, structure {structure}"
+        );
     }
     let frame = part.regions.first();
     for (i, (letter, name)) in LETTERS.iter().zip(pictures).enumerate() {
         let scores = frame.and_then(|f| f.scores.get(i)?.as_ref());
         if let Some(bad) = scores.map(|s| s.not_finite).filter(|n| *n > 0) {
-            let _ =
-                writeln!(out, "  {letter}: {bad} pixels are infinite or no number there or in the reference ({name})");
+            let _ = writeln!(
+                out,
+                "  {letter}: {bad} pixels are infinite or no number there or in the reference ({name})"
+            );
         }
         if frame.is_some_and(|f| f.within_noise.get(i) == Some(&true)) {
-            let _ = writeln!(out, "  {letter} cannot be told from the reference: relMSE is below 4 times its noise");
+            let _ = writeln!(
+                out,
+                "  {letter} cannot be told from the reference: relMSE is below 4 times its noise"
+            );
         }
     }
 }
@@ -71,7 +82,11 @@ fn rows(out: &mut String, region: &RegionComparison) {
     if !region.better.is_empty() {
         let _ = write!(out, "{:<TITLE$}", "    better");
         for (metric, _) in columns() {
-            let verdict = region.better.get(metric.key).map(ToString::to_string).unwrap_or_default();
+            let verdict = region
+                .better
+                .get(metric.key)
+                .map(ToString::to_string)
+                .unwrap_or_default();
             let _ = write!(out, "{verdict:>WIDTH$}");
         }
         out.push('\n');

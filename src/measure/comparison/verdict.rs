@@ -35,7 +35,9 @@ impl fmt::Display for Verdict {
 /// the noise adds to a perfect picture. The noise of other metrics is not known; none is told where both pictures' relMSE
 /// is within it.
 pub fn better(a: &Scores, b: &Scores, noise: Option<Noise>) -> BTreeMap<&'static str, Verdict> {
-    let both = [a, b].iter().all(|s| within_noise(s.get(RELMSE), noise.map(|n| n.relmse)));
+    let both = [a, b]
+        .iter()
+        .all(|s| within_noise(s.get(RELMSE), noise.map(|n| n.relmse)));
     let verdict = |metric: &'static Metric| {
         let [x, y] = [a, b].map(|s| metric.distance(s.get(metric.key)));
         let noisy = noise.is_some_and(|n| metric.within(x - y, n));

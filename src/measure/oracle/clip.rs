@@ -15,8 +15,11 @@ pub struct Corner {
 /// touch it may be a line or a point.
 pub fn clip(t: [DVec3; 3], low: DVec3, high: DVec3) -> Vec<Corner> {
     let units = [DVec3::X, DVec3::Y, DVec3::Z];
-    let mut polygon: Vec<Corner> =
-        t.into_iter().zip(units).map(|(position, weights)| Corner { position, weights }).collect();
+    let mut polygon: Vec<Corner> = t
+        .into_iter()
+        .zip(units)
+        .map(|(position, weights)| Corner { position, weights })
+        .collect();
     let mut kept = Vec::with_capacity(9);
     for axis in 0..3 {
         for (sign, border) in [(1.0, low[axis]), (-1.0, high[axis])] {

@@ -82,7 +82,12 @@ pub struct Comparison {
 
 /// Compares a voxelizer's cells with the exact ones; both in order of numbers.
 pub fn compare(grid: &Grid, exact: &[Cell], voxels: &[Voxel]) -> Comparison {
-    let mut out = Comparison { score: Score::default(), right: Vec::new(), holes: Vec::new(), extras: Vec::new() };
+    let mut out = Comparison {
+        score: Score::default(),
+        right: Vec::new(),
+        holes: Vec::new(),
+        extras: Vec::new(),
+    };
     let mut errors = Errors::default();
     let mut shapes: [(ShapeScore, Errors); SHAPES.len()] = Default::default();
     let mut thin_found = 0;
@@ -110,7 +115,11 @@ pub fn compare(grid: &Grid, exact: &[Cell], voxels: &[Voxel]) -> Comparison {
             }
             None => out.holes.push(cell.number),
         }
-        for (_, (shape, errors)) in shapes.iter_mut().enumerate().filter(|(i, _)| cell.shapes >> i & 1 != 0) {
+        for (_, (shape, errors)) in shapes
+            .iter_mut()
+            .enumerate()
+            .filter(|(i, _)| cell.shapes >> i & 1 != 0)
+        {
             shape.exact += 1;
             match voxel {
                 Some(voxel) => errors.add(cell, voxel),
@@ -121,7 +130,11 @@ pub fn compare(grid: &Grid, exact: &[Cell], voxels: &[Voxel]) -> Comparison {
     out.extras.extend(rest.map(|v| v.number));
     for extra in &out.extras {
         let near = shapes_near(grid, exact, *extra);
-        for (_, (shape, _)) in shapes.iter_mut().enumerate().filter(|(i, _)| near >> i & 1 != 0) {
+        for (_, (shape, _)) in shapes
+            .iter_mut()
+            .enumerate()
+            .filter(|(i, _)| near >> i & 1 != 0)
+        {
             shape.extras += 1;
         }
     }
@@ -220,7 +233,9 @@ fn leaks(grid: &Grid, exact: &[Cell], voxels: &[Voxel]) -> (u64, u64, u64) {
     // Borderline cells block here: else one of them would open what the triangles close.
     let surface = set(&mut exact.iter().map(|c| c.number));
     let outside = flood(grid, &surface, Neighbours::TwentySix);
-    let inside: Vec<usize> = (0..grid.count()).filter(|i| !surface[*i] && !outside[*i]).collect();
+    let inside: Vec<usize> = (0..grid.count())
+        .filter(|i| !surface[*i] && !outside[*i])
+        .collect();
     if inside.is_empty() {
         return (0, 0, 0);
     }
@@ -229,5 +244,9 @@ fn leaks(grid: &Grid, exact: &[Cell], voxels: &[Voxel]) -> (u64, u64, u64) {
         let reached = flood(grid, &blocked, neighbours);
         inside.iter().filter(|i| reached[**i]).count() as u64
     };
-    (inside.len() as u64, reached(Neighbours::Six), reached(Neighbours::TwentySix))
+    (
+        inside.len() as u64,
+        reached(Neighbours::Six),
+        reached(Neighbours::TwentySix),
+    )
 }

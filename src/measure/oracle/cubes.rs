@@ -21,13 +21,18 @@ pub fn cubes(grid: &Grid, found: &Comparison, like: &Scene) -> Result<Scene, Str
     ];
     let total: usize = groups.iter().map(|g| g.2.len()).sum();
     if total > MAX_CUBES {
-        return Err(format!("{total} cells are too many to draw as cubes (at most {MAX_CUBES})"));
+        return Err(format!(
+            "{total} cells are too many to draw as cubes (at most {MAX_CUBES})"
+        ));
     }
     let mut solid = vec![false; grid.count()];
     for number in groups.iter().flat_map(|g| g.2) {
         solid[*number as usize] = true;
     }
-    let mut mesh = Mesh { name: "cells".into(), ..Mesh::default() };
+    let mut mesh = Mesh {
+        name: "cells".into(),
+        ..Mesh::default()
+    };
     let mut materials = Vec::new();
     for (name, color, cells) in groups {
         let first_index = mesh.indices.len() as u32;
@@ -36,11 +41,24 @@ pub fn cubes(grid: &Grid, found: &Comparison, like: &Scene) -> Result<Scene, Str
         }
         let index_count = mesh.indices.len() as u32 - first_index;
         if index_count > 0 {
-            mesh.submeshes.push(Submesh { first_index, index_count, material: materials.len() as u32 });
-            materials.push(Material { name: name.into(), base_color: Vec4::from((color, 1.0)), ..Material::default() });
+            mesh.submeshes.push(Submesh {
+                first_index,
+                index_count,
+                material: materials.len() as u32,
+            });
+            materials.push(Material {
+                name: name.into(),
+                base_color: Vec4::from((color, 1.0)),
+                ..Material::default()
+            });
         }
     }
-    let instance = Instance { name: "cells".into(), mesh: 0, transform: Mat4::IDENTITY, mover: None };
+    let instance = Instance {
+        name: "cells".into(),
+        mesh: 0,
+        transform: Mat4::IDENTITY,
+        mover: None,
+    };
     Ok(Scene {
         name: format!("{}-voxels", like.name),
         meshes: vec![mesh],
@@ -78,9 +96,18 @@ fn add_cube(mesh: &mut Mesh, grid: &Grid, number: u32, solid: &[bool]) {
             tangent[u] = 1.0;
             let first = mesh.vertices.len() as u32;
             let corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-            let vertex = |position| Vertex { position, normal: normal.to_array(), tangent, ..Vertex::default() };
+            let vertex = |position| Vertex {
+                position,
+                normal: normal.to_array(),
+                tangent,
+                ..Vertex::default()
+            };
             mesh.vertices.extend(corners.map(vertex));
-            let order = if side == 1 { [0, 1, 2, 0, 2, 3] } else { [0, 2, 1, 0, 3, 2] };
+            let order = if side == 1 {
+                [0, 1, 2, 0, 2, 3]
+            } else {
+                [0, 2, 1, 0, 3, 2]
+            };
             mesh.indices.extend(order.map(|i| first + i));
         }
     }

@@ -50,7 +50,10 @@ struct Hit {
 /// Every cell that is not outside of all triangles, in order of numbers. Parallel over layers; the result does not depend
 /// on the number of threads. Memory: 60 bytes a cell, and what a few layers hold for each thread.
 pub fn exact(triangles: &[Triangle], surfaces: &Surfaces<'_>, grid: &Grid) -> Vec<Cell> {
-    let shapes: Vec<u8> = triangles.par_iter().map(|t| shape_of(t.corners, grid) as u8).collect();
+    let shapes: Vec<u8> = triangles
+        .par_iter()
+        .map(|t| shape_of(t.corners, grid) as u8)
+        .collect();
     let depth = grid.size()[2];
     let slabs: Vec<Vec<Cell>> = (0..depth.div_ceil(LAYERS))
         .into_par_iter()
@@ -62,13 +65,22 @@ pub fn exact(triangles: &[Triangle], surfaces: &Surfaces<'_>, grid: &Grid) -> Ve
             }
             // Stable: a cell's hits stay in the order of triangles, so its sums are the same every time.
             hits.sort_by_key(|h| h.number);
-            hits.chunk_by(|a, b| a.number == b.number).map(cell_of).collect()
+            hits.chunk_by(|a, b| a.number == b.number)
+                .map(cell_of)
+                .collect()
         })
         .collect();
     slabs.concat()
 }
 
-fn add_hits(t: &Triangle, shape: u8, surfaces: &Surfaces<'_>, grid: &Grid, layers: &Range<u32>, hits: &mut Vec<Hit>) {
+fn add_hits(
+    t: &Triangle,
+    shape: u8,
+    surfaces: &Surfaces<'_>,
+    grid: &Grid,
+    layers: &Range<u32>,
+    hits: &mut Vec<Hit>,
+) {
     let low = t.corners[0].min(t.corners[1]).min(t.corners[2]);
     let high = t.corners[0].max(t.corners[1]).max(t.corners[2]);
     let [xs, ys, zs] = [0, 1, 2].map(|axis| grid.touched(axis, low[axis], high[axis]));
@@ -112,34 +124,55 @@ fn crossed(grid: &Grid, p: DVec3, normal: DVec3, xs: Range<u32>, y: u32, z: u32)
         return xs;
     }
     let at = |y: f64, z: f64| p.x - (normal.y * (y - p.y) + normal.z * (z - p.z)) / normal.x;
-    let ends = [at(low.y, low.z), at(high.y, low.z), at(low.y, high.z), at(high.y, high.z)];
-    let (first, last) = ends.iter().fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(*x), h.max(*x)));
+    let ends = [
+        at(low.y, low.z),
+        at(high.y, low.z),
+        at(low.y, high.z),
+        at(high.y, high.z),
+    ];
+    let (first, last) = ends
+        .iter()
+        .fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(*x), h.max(*x)));
     let found = grid.touched(0, first, last);
     found.start.max(xs.start)..found.end.min(xs.end)
 }
 
 /// The hit with the colour, normal and area of the triangle inside the cell; none where its mask lets all through.
-fn filled(mut hit: Hit, t: &Triangle, surfaces: &Surfaces<'_>, (low, high): (DVec3, DVec3)) -> Option<Hit> {
+fn filled(
+    mut hit: Hit,
+    t: &Triangle,
+    surfaces: &Surfaces<'_>,
+    (low, high): (DVec3, DVec3),
+) -> Option<Hit> {
     let mut polygon = clip(t.corners, low, high);
     let touches = polygon.is_empty();
     if touches {
         // Only a border is touched: the nearest thing to a piece inside is the triangle's middle.
         let position = (t.corners[0] + t.corners[1] + t.corners[2]) / 3.0;
-        polygon.push(Corner { position, weights: DVec3::splat(1.0 / 3.0) });
+        polygon.push(Corner {
+            position,
+            weights: DVec3::splat(1.0 / 3.0),
+        });
     }
     let n = (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]);
     let direction = n.normalize_or_zero();
     let [a, b, c] = t.uv;
     let [u, v, w] = t.uv.map(|uv| surfaces.set(t.material, uv));
     // Texels for each square metre of the triangle.
-    let density = (v - u).perp_dot(w - u).abs() * surfaces.texels(t.material) / n.length().max(1e-30) as f32;
+    let density =
+        (v - u).perp_dot(w - u).abs() * surfaces.texels(t.material) / n.length().max(1e-30) as f32;
     let cutoff = surfaces.cutoff(t.material);
     let (mut there, mut gone) = (0.0, 0.0);
     for (weights, area) in samples(&polygon, direction, density > 0.0) {
         let w = weights.as_vec3();
         let uv: Vec4 = a * w.x + b * w.y + c * w.z;
         let tint = t.colors[0] * w.x + t.colors[1] * w.y + t.colors[2] * w.z;
-        let base = tint * surfaces.base_color(t.material, uv, 0.5 * (area as f32 * density).max(1e-6).log2());
+        let base = tint
+            * surfaces.base_color(
+                t.material,
+                uv,
+                0.5 * (area as f32 * density).max(1e-6).log2(),
+            );
         if base.w < cutoff {
             gone += area;
             continue;
@@ -172,7 +205,11 @@ fn samples(polygon: &[Corner], direction: DVec3, textured: bool) -> Vec<(DVec3, 
     let mut list = Vec::new();
     for i in 1..polygon.len().saturating_sub(1) {
         let [p, q, r] = [polygon[0], polygon[i], polygon[i + 1]];
-        let area = 0.5 * (q.position - p.position).cross(r.position - p.position).dot(direction).abs();
+        let area = 0.5
+            * (q.position - p.position)
+                .cross(r.position - p.position)
+                .dot(direction)
+                .abs();
         let middle = |a: DVec3, b: DVec3, c: DVec3| (a + b + c) / 3.0;
         let (p, q, r) = (p.weights, q.weights, r.weights);
         if !textured {
@@ -194,11 +231,24 @@ fn cell_of(hits: &[Hit]) -> Cell {
     let area: f64 = hits.iter().map(|h| h.area).sum();
     Cell {
         number: hits[0].number,
-        overlap: hits.iter().map(|h| h.overlap).max().unwrap_or(Overlap::Outside),
-        thin: hits.iter().map(|h| h.thin).max().unwrap_or(Overlap::Outside),
+        overlap: hits
+            .iter()
+            .map(|h| h.overlap)
+            .max()
+            .unwrap_or(Overlap::Outside),
+        thin: hits
+            .iter()
+            .map(|h| h.thin)
+            .max()
+            .unwrap_or(Overlap::Outside),
         shapes: hits.iter().fold(0, |set, h| set | 1 << h.shape),
         color: (hits.iter().map(|h| h.color).sum::<DVec3>() / area).as_vec3(),
         normal: (hits.iter().map(|h| h.normal).sum::<DVec3>() / area).as_vec3(),
-        coverage: hits.iter().map(|h| h.hidden).sum::<DVec3>().max_element().min(1.0) as f32,
+        coverage: hits
+            .iter()
+            .map(|h| h.hidden)
+            .sum::<DVec3>()
+            .max_element()
+            .min(1.0) as f32,
     }
 }

@@ -22,10 +22,14 @@ impl Grid {
         for (axis, list) in ["x", "y", "z"].iter().zip(&borders) {
             if !(2..=MAX_CELLS + 1).contains(&list.len()) {
                 let cells = list.len().saturating_sub(1);
-                return Err(format!("{cells} cells along {axis}; the oracle takes 1 to {MAX_CELLS}"));
+                return Err(format!(
+                    "{cells} cells along {axis}; the oracle takes 1 to {MAX_CELLS}"
+                ));
             }
             if !list.iter().all(|b| b.is_finite()) || !list.windows(2).all(|w| w[0] < w[1]) {
-                return Err(format!("the cells' borders along {axis} do not rise, or are no numbers"));
+                return Err(format!(
+                    "the cells' borders along {axis} do not rise, or are no numbers"
+                ));
             }
         }
         Ok(Grid { borders })
@@ -50,7 +54,11 @@ impl Grid {
     /// The place of a cell by its number.
     pub fn place(&self, number: u32) -> [u32; 3] {
         let [width, height, _] = self.size();
-        [number % width, number / width % height, number / width / height]
+        [
+            number % width,
+            number / width % height,
+            number / width / height,
+        ]
     }
 
     /// The lowest and highest corner of a cell, m.
@@ -65,14 +73,20 @@ impl Grid {
         let last = borders.len() - 1;
         let first = borders.partition_point(|b| *b < low).saturating_sub(2);
         let end = (borders.partition_point(|b| *b <= high) + 1).min(last);
-        if high < borders[0] || low > borders[last] { 0..0 } else { first as u32..end as u32 }
+        if high < borders[0] || low > borders[last] {
+            0..0
+        } else {
+            first as u32..end as u32
+        }
     }
 
     /// Edges (m) of the cell at a point, or of the nearest one.
     pub fn edges_at(&self, p: DVec3) -> DVec3 {
         let edge = |axis: usize| {
             let borders = &self.borders[axis];
-            let i = borders.partition_point(|b| *b <= p[axis]).clamp(1, borders.len() - 1);
+            let i = borders
+                .partition_point(|b| *b <= p[axis])
+                .clamp(1, borders.len() - 1);
             borders[i] - borders[i - 1]
         };
         DVec3::new(edge(0), edge(1), edge(2))

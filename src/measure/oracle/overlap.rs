@@ -36,7 +36,10 @@ impl Axes {
     pub fn new(t: [DVec3; 3]) -> Axes {
         let edges = [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
         let units = [DVec3::X, DVec3::Y, DVec3::Z];
-        let longest = edges.map(DVec3::length_squared).into_iter().fold(0.0, f64::max);
+        let longest = edges
+            .map(DVec3::length_squared)
+            .into_iter()
+            .fold(0.0, f64::max);
         let mut directions = [DVec3::ZERO; 13];
         directions[..3].copy_from_slice(&units);
         let normal = edges[0].cross(-edges[2]);
@@ -54,7 +57,11 @@ impl Axes {
         Axes {
             axes: directions.map(|direction| {
                 let p = t.map(|v| v.dot(direction));
-                Axis { direction, low: p[0].min(p[1]).min(p[2]), high: p[0].max(p[1]).max(p[2]) }
+                Axis {
+                    direction,
+                    low: p[0].min(p[1]).min(p[2]),
+                    high: p[0].max(p[1]).max(p[2]),
+                }
             }),
         }
     }
@@ -70,18 +77,34 @@ impl Axes {
     /// which is 6-separating: those of them in which it may cross a line between the middles of opposite faces (Schwarz
     /// and Seidel 2010, Section 4.2: the plane, and the edges in the projection along the dominant axis).
     pub fn overlap(&self, centre: DVec3, half: DVec3) -> (Overlap, Overlap) {
-        let conservative = decide(self.axes.iter(), centre, |a| (a.direction.abs() * half).element_sum());
+        let conservative = decide(self.axes.iter(), centre, |a| {
+            (a.direction.abs() * half).element_sum()
+        });
         if conservative == Overlap::Outside {
             return (Overlap::Outside, Overlap::Outside);
         }
         let across = (self.normal().abs() * half).to_array();
         let dominant = (0..3).fold(0, |best, i| if across[i] > across[best] { i } else { best });
-        let used = self.axes.iter().enumerate().filter(|(i, _)| *i < 4 || (*i - 4) % 3 == dominant).map(|(_, a)| a);
-        (conservative, conservative.min(decide(used, centre, |a| (a.direction.abs() * half).max_element())))
+        let used = self
+            .axes
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| *i < 4 || (*i - 4) % 3 == dominant)
+            .map(|(_, a)| a);
+        (
+            conservative,
+            conservative.min(decide(used, centre, |a| {
+                (a.direction.abs() * half).max_element()
+            })),
+        )
     }
 }
 
-fn decide<'a>(axes: impl Iterator<Item = &'a Axis>, centre: DVec3, reach: impl Fn(&Axis) -> f64) -> Overlap {
+fn decide<'a>(
+    axes: impl Iterator<Item = &'a Axis>,
+    centre: DVec3,
+    reach: impl Fn(&Axis) -> f64,
+) -> Overlap {
     let mut found = Overlap::Inside;
     for axis in axes {
         let at = centre.dot(axis.direction);

@@ -40,33 +40,57 @@ struct Resources {
 
 /// What a graph says of its voxels; nothing where it makes none.
 fn resources(graph: &Graph) -> Result<Option<Resources>, Diagnostic> {
-    let Some(tool) = graph.tool(TOOL) else { return Ok(None) };
+    let Some(tool) = graph.tool(TOOL) else {
+        return Ok(None);
+    };
     let named = |role: &str| {
-        let missing = || graph.sources.error(tool.at, format!("'{TOOL}' is told no resource '{role}' (docs/graph.md)"));
+        let missing = || {
+            graph.sources.error(
+                tool.at,
+                format!("'{TOOL}' is told no resource '{role}' (docs/graph.md)"),
+            )
+        };
         tool.value.resource(role).ok_or_else(missing)
     };
     let volume = |role: &str| {
         let name = named(role)?;
-        let volume = graph.texture(&name.value).is_some_and(|t| graph.textures[t].1.value.is_volume());
-        let wrong = || graph.sources.error(name.at, format!("'{}' is no 3D texture, as voxels are", name.value));
+        let volume = graph
+            .texture(&name.value)
+            .is_some_and(|t| graph.textures[t].1.value.is_volume());
+        let wrong = || {
+            graph.sources.error(
+                name.at,
+                format!("'{}' is no 3D texture, as voxels are", name.value),
+            )
+        };
         volume.then(|| name.value.clone()).ok_or_else(wrong)
     };
     let borders = named("borders")?;
     if graph.buffer(&borders.value).is_none() {
-        let message = format!("'{}' is no buffer, as the cells' borders are", borders.value);
+        let message = format!(
+            "'{}' is no buffer, as the cells' borders are",
+            borders.value
+        );
         return Err(graph.sources.error(borders.at, message));
     }
     let borders = borders.value.clone();
-    Ok(Some(Resources { occupied: volume("occupied")?, color: volume("color")?, normal: volume("normal")?, borders }))
+    Ok(Some(Resources {
+        occupied: volume("occupied")?,
+        color: volume("color")?,
+        normal: volume("normal")?,
+        borders,
+    }))
 }
 
 fn declared(graph: &Graph) -> Result<Resources, LabError> {
-    resources(graph).map_err(|wrong| LabError::Input(vec![wrong]))?.ok_or_else(|| {
-        LabError::Request(format!(
-            "graph '{}' makes no voxels (docs/graph.md), so there is nothing to check",
-            graph.name
-        ))
-    })
+    resources(graph)
+        .map_err(|wrong| LabError::Input(vec![wrong]))?
+        .ok_or_else(|| {
+            LabError::Request(format!(
+                "graph '{}' makes no voxels (docs/graph.md), so there is nothing to check",
+                graph.name
+            ))
+        })
 }
 
 /// Whether a graph makes voxels that can be compared.
@@ -81,7 +105,11 @@ pub fn mistake(graph: &Graph) -> Option<Diagnostic> {
 
 /// Ways of making voxels that a graph says are worth comparing.
 pub fn modes(graph: &Graph) -> impl Iterator<Item = &ViewDecl> {
-    graph.tool(TOOL).into_iter().flat_map(|tool| &tool.value.settings.0).map(|mode| &mode.value)
+    graph
+        .tool(TOOL)
+        .into_iter()
+        .flat_map(|tool| &tool.value.settings.0)
+        .map(|mode| &mode.value)
 }
 
 /// What a session must keep for [`read`].
@@ -104,18 +132,28 @@ pub fn read(session: &mut Session) -> Result<(Grid, Vec<Voxel>), LabError> {
     let bytes = occupied.format.bytes as usize;
     let [x, y, z] = grid.size().map(|n| n as usize);
     let before = first as usize * x * y;
-    let texels = occupied.bytes.chunks_exact(bytes).skip(before).take(x * y * z);
-    let numbers: Vec<u32> =
-        texels.zip(0u32..).filter(|(texel, _)| texel.iter().any(|b| *b != 0)).map(|(_, i)| i).collect();
+    let texels = occupied
+        .bytes
+        .chunks_exact(bytes)
+        .skip(before)
+        .take(x * y * z);
+    let numbers: Vec<u32> = texels
+        .zip(0u32..)
+        .filter(|(texel, _)| texel.iter().any(|b| *b != 0))
+        .map(|(_, i)| i)
+        .collect();
     drop(occupied);
     let color = texels_at(session, &v.color, before, &numbers)?;
     let normal = texels_at(session, &v.normal, before, &numbers)?;
-    let voxels = numbers.iter().zip(color.iter().zip(&normal)).map(|(number, (color, normal))| Voxel {
-        number: *number,
-        color: Vec3::new(color[0], color[1], color[2]),
-        opacity: color[3],
-        normal: (Vec3::new(normal[0], normal[1], normal[2]) * 2.0 - 1.0).normalize_or_zero(),
-    });
+    let voxels = numbers
+        .iter()
+        .zip(color.iter().zip(&normal))
+        .map(|(number, (color, normal))| Voxel {
+            number: *number,
+            color: Vec3::new(color[0], color[1], color[2]),
+            opacity: color[3],
+            normal: (Vec3::new(normal[0], normal[1], normal[2]) * 2.0 - 1.0).normalize_or_zero(),
+        });
     let voxels = voxels.collect();
     Ok((grid, voxels))
 }
@@ -138,20 +176,38 @@ fn grid_in(session: &mut Session, v: &Resources, cells: [u32; 3]) -> Result<(Gri
 }
 
 /// Texels by number, counted from texel `before`. Only those are turned into floats: a whole volume of them can take gigabytes.
-fn texels_at(session: &mut Session, name: &str, before: usize, numbers: &[u32]) -> Result<Vec<[f32; 4]>, LabError> {
+fn texels_at(
+    session: &mut Session,
+    name: &str,
+    before: usize,
+    numbers: &[u32],
+) -> Result<Vec<[f32; 4]>, LabError> {
     let all = session.texels(name, 0, 0)?;
     let size = all.format.bytes as usize;
     let place = |n: &u32| (before + *n as usize) * size;
-    let bytes = numbers.iter().filter_map(|n| all.bytes.get(place(n)..place(n) + size)).flatten();
-    let some = Texels { extent: [numbers.len() as u32, 1, 1], format: all.format, bytes: bytes.copied().collect() };
+    let bytes = numbers
+        .iter()
+        .filter_map(|n| all.bytes.get(place(n)..place(n) + size))
+        .flatten();
+    let some = Texels {
+        extent: [numbers.len() as u32, 1, 1],
+        format: all.format,
+        bytes: bytes.copied().collect(),
+    };
     Ok(some.floats())
 }
 
 /// The grid that a buffer of borders describes; see [`Resources::borders`].
 fn grid_of(bytes: &[u8], texture: [u32; 3]) -> Result<(Grid, u32), String> {
-    let words: Vec<u32> = bytes.as_chunks::<4>().0.iter().map(|w| u32::from_ne_bytes(*w)).collect();
-    let ([boxes, first, x, y, z], mut rest) =
-        words.split_first_chunk::<5>().ok_or("the buffer of the cells' borders is too short")?;
+    let words: Vec<u32> = bytes
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .map(|w| u32::from_ne_bytes(*w))
+        .collect();
+    let ([boxes, first, x, y, z], mut rest) = words
+        .split_first_chunk::<5>()
+        .ok_or("the buffer of the cells' borders is too short")?;
     if *boxes == 0 {
         return Err(
             "the cells are curved, no boxes: the oracle knows boxes only. Choose another warp, or another cascade \
@@ -159,7 +215,9 @@ fn grid_of(bytes: &[u8], texture: [u32; 3]) -> Result<(Grid, u32), String> {
                 .into(),
         );
     }
-    if [*x, *y] != [texture[0], texture[1]] || first.checked_add(*z).is_none_or(|end| end > texture[2]) {
+    if [*x, *y] != [texture[0], texture[1]]
+        || first.checked_add(*z).is_none_or(|end| end > texture[2])
+    {
         return Err(format!(
             "the cells' borders are of {x} x {y} x {z} cells from z = {first} on, the textures have {texture:?}"
         ));
@@ -167,7 +225,9 @@ fn grid_of(bytes: &[u8], texture: [u32; 3]) -> Result<(Grid, u32), String> {
     let mut borders = [const { Vec::new() }; 3];
     for (list, cells) in borders.iter_mut().zip([x, y, z]) {
         let count = *cells as usize + 1;
-        let (these, others) = rest.split_at_checked(count).ok_or("the buffer of the cells' borders is too short")?;
+        let (these, others) = rest
+            .split_at_checked(count)
+            .ok_or("the buffer of the cells' borders is too short")?;
         list.extend(these.iter().map(|w| f64::from(f32::from_bits(*w))));
         rest = others;
     }

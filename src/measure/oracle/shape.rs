@@ -4,7 +4,14 @@ use super::grid::Grid;
 use glam::DVec3;
 
 /// The classes; a triangle belongs to the first whose definition fits.
-pub const SHAPES: [&str; 6] = ["sub-voxel", "obtuse", "needle", "huge", "axis-aligned", "other"];
+pub const SHAPES: [&str; 6] = [
+    "sub-voxel",
+    "obtuse",
+    "needle",
+    "huge",
+    "axis-aligned",
+    "other",
+];
 
 /// The class of a triangle, an index of [`SHAPES`].
 ///
@@ -24,7 +31,9 @@ pub fn shape_of(t: [DVec3; 3], grid: &Grid) -> usize {
     if (0..3).any(|i| cosine(i) < -(3.0f64.sqrt() / 2.0)) {
         return 1;
     }
-    let longest = (0..3).map(|i| t[i].distance_squared(t[(i + 1) % 3])).fold(0.0, f64::max);
+    let longest = (0..3)
+        .map(|i| t[i].distance_squared(t[(i + 1) % 3]))
+        .fold(0.0, f64::max);
     let normal = (t[1] - t[0]).cross(t[2] - t[0]);
     if normal.length() < longest / 20.0 {
         return 2;
@@ -33,5 +42,9 @@ pub fn shape_of(t: [DVec3; 3], grid: &Grid) -> usize {
     if (0..3).any(|axis| cells[axis] >= size[axis] / 4.0) {
         return 3;
     }
-    if normal.normalize_or_zero().abs().max_element() > 1.0 - 5e-7 { 4 } else { 5 }
+    if normal.normalize_or_zero().abs().max_element() > 1.0 - 5e-7 {
+        4
+    } else {
+        5
+    }
 }

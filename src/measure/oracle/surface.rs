@@ -18,33 +18,56 @@ impl<'s> Surfaces<'s> {
     pub fn new(scene: &'s Scene) -> Surfaces<'s> {
         let mut textures = vec![None; scene.textures.len()];
         for index in scene.materials.iter().filter_map(|m| m.base_color_texture) {
-            let (Some(slot), Some(t)) = (textures.get_mut(index as usize), scene.textures.get(index as usize)) else {
+            let (Some(slot), Some(t)) = (
+                textures.get_mut(index as usize),
+                scene.textures.get(index as usize),
+            ) else {
                 continue;
             };
             if slot.is_none() {
                 let packed = t.format.is_compressed();
-                *slot = Some(if packed { Cow::Owned(t.resampled(t.width, t.height)) } else { Cow::Borrowed(t) });
+                *slot = Some(if packed {
+                    Cow::Owned(t.resampled(t.width, t.height))
+                } else {
+                    Cow::Borrowed(t)
+                });
             }
         }
         let linear = std::array::from_fn(|i| {
             let c = i as f32 / 255.0;
-            if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+            if c <= 0.04045 {
+                c / 12.92
+            } else {
+                ((c + 0.055) / 1.055).powf(2.4)
+            }
         });
-        Surfaces { scene, textures, linear }
+        Surfaces {
+            scene,
+            textures,
+            linear,
+        }
     }
 
     /// Alpha below which a material is not there; 0: it has no mask.
     pub fn cutoff(&self, material: u32) -> f32 {
-        self.scene.materials.get(material as usize).map_or(0.0, |m| m.alpha_cutoff)
+        self.scene
+            .materials
+            .get(material as usize)
+            .map_or(0.0, |m| m.alpha_cutoff)
     }
 
     /// Texels of the base colour's finest level in a square of texture coordinates; 0 without a texture.
     pub fn texels(&self, material: u32) -> f32 {
-        self.texture(material).map_or(0.0, |t| t.width as f32 * t.height as f32)
+        self.texture(material)
+            .map_or(0.0, |t| t.width as f32 * t.height as f32)
     }
 
     fn texture(&self, material: u32) -> Option<&Texture> {
-        let index = self.scene.materials.get(material as usize)?.base_color_texture?;
+        let index = self
+            .scene
+            .materials
+            .get(material as usize)?
+            .base_color_texture?;
         self.textures.get(index as usize)?.as_deref()
     }
 
@@ -54,14 +77,23 @@ impl<'s> Surfaces<'s> {
     }
 
     fn lookup(&self, material: u32) -> Lookup {
-        self.scene.materials.get(material as usize).map_or_else(Lookup::default, |m| m.lookups.base_color)
+        self.scene
+            .materials
+            .get(material as usize)
+            .map_or_else(Lookup::default, |m| m.lookups.base_color)
     }
 
     /// Linear base colour and alpha, without the colour of vertices; `level` counts halvings of the texture, the nearest one is interpolated.
     pub fn base_color(&self, material: u32, sets: Vec4, level: f32) -> Vec4 {
         let uv = self.lookup(material).place(sets);
-        let factor = self.scene.materials.get(material as usize).map_or(Vec4::ONE, |m| m.base_color);
-        let Some(texture) = self.texture(material) else { return factor };
+        let factor = self
+            .scene
+            .materials
+            .get(material as usize)
+            .map_or(Vec4::ONE, |m| m.base_color);
+        let Some(texture) = self.texture(material) else {
+            return factor;
+        };
         let level = (level.round().max(0.0) as usize).min(texture.mips.len().saturating_sub(1));
         let size = [texture.width, texture.height].map(|n| (n >> level).max(1));
         let at = (uv - uv.floor()) * Vec2::new(size[0] as f32, size[1] as f32) - 0.5;
@@ -70,11 +102,22 @@ impl<'s> Surfaces<'s> {
             let x = (low.x as i32 + dx).rem_euclid(size[0] as i32) as usize;
             let y = (low.y as i32 + dy).rem_euclid(size[1] as i32) as usize;
             let start = 4 * (x + size[0] as usize * y);
-            let bytes = texture.mips[level].get(start..start + 4).unwrap_or(&[255, 0, 255, 255]);
+            let bytes = texture.mips[level]
+                .get(start..start + 4)
+                .unwrap_or(&[255, 0, 255, 255]);
             let channel = |i: usize| {
-                if texture.format.is_srgb() { self.linear[bytes[i] as usize] } else { f32::from(bytes[i]) / 255.0 }
+                if texture.format.is_srgb() {
+                    self.linear[bytes[i] as usize]
+                } else {
+                    f32::from(bytes[i]) / 255.0
+                }
             };
-            Vec4::new(channel(0), channel(1), channel(2), f32::from(bytes[3]) / 255.0)
+            Vec4::new(
+                channel(0),
+                channel(1),
+                channel(2),
+                f32::from(bytes[3]) / 255.0,
+            )
         };
         let row = |dy: i32| texel(0, dy).lerp(texel(1, dy), part.x);
         factor * row(0).lerp(row(1), part.y)

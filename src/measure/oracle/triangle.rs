@@ -26,13 +26,15 @@ pub fn triangles_of(scene: &Scene, time: f64) -> Vec<Triangle> {
     let meshes = scene.posed_meshes(time as f32);
     for (i, instance) in scene.instances.iter().enumerate() {
         let number = instance.mesh as usize;
-        let (Some(mesh), Some(vertices)) = (scene.meshes.get(number), meshes.get(number)) else { continue };
+        let (Some(mesh), Some(vertices)) = (scene.meshes.get(number), meshes.get(number)) else {
+            continue;
+        };
         let mut model = scene.instance_transform(i, time as f32);
         model.w_axis -= origin;
         let turn = Mat3::from_mat4(model).inverse().transpose();
         for submesh in &mesh.submeshes {
-            let indices =
-                &mesh.indices[submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize];
+            let indices = &mesh.indices[submesh.first_index as usize
+                ..(submesh.first_index + submesh.index_count) as usize];
             list.extend(indices.as_chunks::<3>().0.iter().map(|t| {
                 let v = t.map(|i| vertices[i as usize]);
                 Triangle {

@@ -51,7 +51,9 @@ pub fn gather(
     goal: Goal,
     progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
 ) -> Result<Reference, LabError> {
-    Tracer::default().sums(lab, experiment, scene, bounces, goal, progress)?.reference(false)
+    Tracer::default()
+        .sums(lab, experiment, scene, bounces, goal, progress)?
+        .reference(false)
 }
 
 /// Gathers one reference after another, each on what the one before it left: the compiled graph, its pipelines, and the
@@ -71,7 +73,8 @@ struct Traced {
 
 impl Traced {
     fn reference(&self, halves: bool) -> Result<Reference, LabError> {
-        self.sums.reference(&self.loaded.graph, &self.folder, halves)
+        self.sums
+            .reference(&self.loaded.graph, &self.folder, halves)
     }
 }
 
@@ -89,7 +92,8 @@ impl Tracer {
         goal: Goal,
         progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
     ) -> Result<Reference, LabError> {
-        self.sums(lab, experiment, scene, bounces, goal, progress)?.reference(true)
+        self.sums(lab, experiment, scene, bounces, goal, progress)?
+            .reference(true)
     }
 
     fn sums(
@@ -107,19 +111,38 @@ impl Tracer {
         };
         self.loaded = Some(loaded.clone());
         let mut traced = key::traced_by(&loaded, experiment, bounces)?;
-        let folder = lab.home.root.join("captures/reference").join(key::key(&traced, &loaded, scene)?);
+        let folder = lab
+            .home
+            .root
+            .join("captures/reference")
+            .join(key::key(&traced, &loaded, scene)?);
         let mut sums = match store::read(&folder, traced.size, &loaded.graph)? {
             Some(sums) => sums,
             None => Sums::new(traced.size, &loaded.graph.parts),
         };
         let mut now = state(&sums, goal)?;
         if now.samples >= now.goal {
-            return Ok(Traced { sums, folder, loaded });
+            return Ok(Traced {
+                sums,
+                folder,
+                loaded,
+            });
         }
         let per_frame = samples_per_frame(lab.gpu.info.kind, traced.size);
         traced.set("samples", &per_frame.to_string());
-        let wanted = loaded.graph.parts.iter().map(|p| store::sum_texture(&p.name)).collect();
-        let mut session = lab.build(&traced, &loaded, scene.clone(), wanted, self.shared.as_ref())?;
+        let wanted = loaded
+            .graph
+            .parts
+            .iter()
+            .map(|p| store::sum_texture(&p.name))
+            .collect();
+        let mut session = lab.build(
+            &traced,
+            &loaded,
+            scene.clone(),
+            wanted,
+            self.shared.as_ref(),
+        )?;
         let (mut kept, mut all_kept) = (Instant::now(), true);
         while now.samples < now.goal {
             frame(lab, &mut session, &mut sums, per_frame)?;
@@ -140,25 +163,41 @@ impl Tracer {
             if stop && all_kept {
                 let before = store::read(&folder, traced.size, &loaded.graph)?;
                 let block = store::BLOCK;
-                sums = before.ok_or_else(|| LabError::Request(format!("stopped before the first {block} samples")))?;
+                sums = before.ok_or_else(|| {
+                    LabError::Request(format!("stopped before the first {block} samples"))
+                })?;
                 break;
             }
         }
         self.shared = Some(session.share());
-        Ok(Traced { sums, folder, loaded })
+        Ok(Traced {
+            sums,
+            folder,
+            loaded,
+        })
     }
 }
 
 /// How far the sums are from a goal.
 fn state(sums: &Sums, goal: Goal) -> Result<Gathered, LabError> {
-    let noise = if sums.samples >= 2 { sums.noise("total")? / 4.0 } else { f64::INFINITY };
+    let noise = if sums.samples >= 2 {
+        sums.noise("total")? / 4.0
+    } else {
+        f64::INFINITY
+    };
     let blocks = |samples: u64| samples.max(1).next_multiple_of(store::BLOCK);
     let goal = match goal {
         Goal::Samples(n) => blocks(n),
-        Goal::Noise(most) if noise <= most && sums.samples.is_multiple_of(store::BLOCK) => sums.samples,
+        Goal::Noise(most) if noise <= most && sums.samples.is_multiple_of(store::BLOCK) => {
+            sums.samples
+        }
         // The square of the error falls with the number of samples.
         Goal::Noise(most) => {
-            let factor = if noise.is_finite() && most > 0.0 { (noise / most).clamp(1.0, 1e6) } else { 2.0 };
+            let factor = if noise.is_finite() && most > 0.0 {
+                (noise / most).clamp(1.0, 1e6)
+            } else {
+                2.0
+            };
             let more = (sums.samples.max(1) as f64 * factor) as u64;
             if sums.samples >= MOST_SAMPLES {
                 sums.samples
@@ -167,7 +206,11 @@ fn state(sums: &Sums, goal: Goal) -> Result<Gathered, LabError> {
             }
         }
     };
-    Ok(Gathered { samples: sums.samples, goal, noise })
+    Ok(Gathered {
+        samples: sums.samples,
+        goal,
+        noise,
+    })
 }
 
 /// Samples that one submission takes of every pixel: a divisor of the block, few on processors without a GPU, where a
@@ -181,9 +224,13 @@ fn samples_per_frame(kind: &str, (width, height): (u32, u32)) -> u64 {
 
 fn frame(lab: &Lab, session: &mut Session, sums: &mut Sums, samples: u64) -> Result<(), LabError> {
     let mut params = session.params.clone();
-    params.set("first_sample", &sums.samples.to_string()).map_err(LabError::Request)?;
+    params
+        .set("first_sample", &sums.samples.to_string())
+        .map_err(LabError::Request)?;
     if !session.set_params(lab, &params)? {
-        return Err(LabError::Request("'first_sample' of the reference graph must not change what is planned".into()));
+        return Err(LabError::Request(
+            "'first_sample' of the reference graph must not change what is planned".into(),
+        ));
     }
     session.run(1)?;
     if let Some(message) = session.failed_checks()?.into_iter().next() {

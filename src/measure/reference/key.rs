@@ -23,17 +23,33 @@ const DISPLAY: &str = "Display";
 ///
 /// # Errors
 /// The graph of references, or that of the experiment, cannot be read; a value that it does not take.
-pub fn experiment_for(home: &Workspace, experiment: &Experiment, bounces: u32) -> Result<Experiment, LabError> {
-    traced_by(&home.load(GRAPH).map_err(LabError::Input)?, experiment, bounces)
+pub fn experiment_for(
+    home: &Workspace,
+    experiment: &Experiment,
+    bounces: u32,
+) -> Result<Experiment, LabError> {
+    traced_by(
+        &home.load(GRAPH).map_err(LabError::Input)?,
+        experiment,
+        bounces,
+    )
 }
 
 /// [`experiment_for`] with the graph of references at hand.
-pub(super) fn traced_by(loaded: &Loaded, experiment: &Experiment, bounces: u32) -> Result<Experiment, LabError> {
+pub(super) fn traced_by(
+    loaded: &Loaded,
+    experiment: &Experiment,
+    bounces: u32,
+) -> Result<Experiment, LabError> {
     let graph = &loaded.graph;
     let mut traced = experiment.clone();
     traced.graph = GRAPH.into();
-    traced.params.retain(|(name, _)| graph.params.index(&name.value).is_some());
-    traced.params.retain(|(name, _)| name.value != "bounces" && !WHICH_SAMPLES.contains(&name.value.as_str()));
+    traced
+        .params
+        .retain(|(name, _)| graph.params.index(&name.value).is_some());
+    traced.params.retain(|(name, _)| {
+        name.value != "bounces" && !WHICH_SAMPLES.contains(&name.value.as_str())
+    });
     traced.set("bounces", &bounces.to_string());
     // Told now, with the place where it stands.
     params_of(graph, &traced)?;
@@ -51,18 +67,30 @@ pub(super) fn shaders(loaded: &Loaded) -> String {
 
 /// 16 hexadecimal digits of everything that the samples of an experiment of [`GRAPH`] depend on: the compiled shaders,
 /// the scene's content, camera, size, time, and parameters.
-pub(super) fn key(traced: &Experiment, loaded: &Loaded, scene: &Arc<Scene>) -> Result<String, LabError> {
+pub(super) fn key(
+    traced: &Experiment,
+    loaded: &Loaded,
+    scene: &Arc<Scene>,
+) -> Result<String, LabError> {
     let mut parts: Vec<Vec<u8>> = Vec::new();
     for (link, pass) in loaded.linked.iter().zip(&loaded.graph.passes) {
         parts.push(pass.value.name.value.clone().into());
-        parts.extend(link.stages.iter().map(|s| bytemuck::cast_slice(&s.words).to_vec()));
+        parts.extend(
+            link.stages
+                .iter()
+                .map(|s| bytemuck::cast_slice(&s.words).to_vec()),
+        );
     }
     parts.push(scene_hash(scene).into());
     parts.push(format!("{:?}", camera_of(traced, scene)?).into());
     parts.push(format!("{:?} {:?}", traced.size, traced.time).into());
     let params: Params = params_of(&loaded.graph, traced)?;
     let sampled = |p: &Param| p.group != DISPLAY && !WHICH_SAMPLES.contains(&p.name.as_str());
-    let values = params.list.iter().zip(&params.values).filter(|(p, _)| sampled(p));
+    let values = params
+        .list
+        .iter()
+        .zip(&params.values)
+        .filter(|(p, _)| sampled(p));
     parts.extend(values.map(|(p, value)| format!("{} {value:?}", p.name).into()));
     Ok(content_id(parts, 16))
 }

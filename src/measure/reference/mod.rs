@@ -37,7 +37,10 @@ impl Reference {
     /// What it takes of memory.
     pub fn bytes(&self) -> usize {
         let pictures = |p: &ReferencePart| if p.halves.is_some() { 3 } else { 1 };
-        self.parts.values().map(|p| pictures(p) * std::mem::size_of_val(&p.mean.rgb[..])).sum()
+        self.parts
+            .values()
+            .map(|p| pictures(p) * std::mem::size_of_val(&p.mean.rgb[..]))
+            .sum()
     }
 }
 
@@ -74,7 +77,11 @@ pub fn find(
     let traced = experiment_for(home, experiment, bounces)?;
     let loaded = home.load(&traced.graph).map_err(LabError::Input)?;
     let key = key::key(&traced, &loaded, scene)?;
-    read(&home.root.join("captures/reference").join(&key), traced.size, &loaded.graph)
+    read(
+        &home.root.join("captures/reference").join(&key),
+        traced.size,
+        &loaded.graph,
+    )
 }
 
 /// The reference in a folder, if its sums are there.
@@ -83,5 +90,6 @@ pub fn find(
 /// Files that are damaged, or of another size or graph.
 pub fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Option<Reference>, LabError> {
     let sums = store::read(folder, size, graph)?;
-    sums.map(|sums| sums.reference(graph, folder, false)).transpose()
+    sums.map(|sums| sums.reference(graph, folder, false))
+        .transpose()
 }

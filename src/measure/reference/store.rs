@@ -9,8 +9,8 @@ use crate::lab::LabError;
 use crate::metrics::{Kind, Linear, MetricError, Noise, relmse, structure_noise};
 use crate::vulkan::DeviceInfo;
 use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels, ReadLayers,
-    WritableImage,
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels,
+    ReadLayers, WritableImage,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -72,18 +72,30 @@ impl Sums {
     /// Without samples.
     pub fn new(size: (u32, u32), parts: &[LightPart]) -> Sums {
         let pixels = size.0 as usize * size.1 as usize;
-        let empty = |p: &LightPart| (p.name.clone(), [vec![[0.0; 4]; pixels], vec![[0.0; 4]; pixels]]);
-        Sums { size, samples: 0, parts: parts.iter().map(empty).collect() }
+        let empty = |p: &LightPart| {
+            (
+                p.name.clone(),
+                [vec![[0.0; 4]; pixels], vec![[0.0; 4]; pixels]],
+            )
+        };
+        Sums {
+            size,
+            samples: 0,
+            parts: parts.iter().map(empty).collect(),
+        }
     }
 
     /// Adds the sums of a frame.
     pub fn add(&mut self, part: &str, half: usize, sums: &[[f32; 4]]) {
         if let Some(halves) = self.parts.get_mut(part) {
-            halves[half].par_iter_mut().zip(sums).for_each(|(sum, more)| {
-                for (s, m) in sum.iter_mut().zip(more) {
-                    *s += m;
-                }
-            });
+            halves[half]
+                .par_iter_mut()
+                .zip(sums)
+                .for_each(|(sum, more)| {
+                    for (s, m) in sum.iter_mut().zip(more) {
+                        *s += m;
+                    }
+                });
         }
     }
 
@@ -91,11 +103,25 @@ impl Sums {
     fn mean(&self, part: &str, kind: Kind, halves: &[usize]) -> Linear {
         let pixels = self.size.0 as usize * self.size.1 as usize;
         let mut sum = vec![[0f64; 4]; pixels];
-        for half in self.parts.get(part).into_iter().flat_map(|p| halves.iter().map(|h| &p[*h])) {
-            sum.par_iter_mut().zip(half).for_each(|(s, h)| (0..4).for_each(|i| s[i] += f64::from(h[i])));
+        for half in self
+            .parts
+            .get(part)
+            .into_iter()
+            .flat_map(|p| halves.iter().map(|h| &p[*h]))
+        {
+            sum.par_iter_mut()
+                .zip(half)
+                .for_each(|(s, h)| (0..4).for_each(|i| s[i] += f64::from(h[i])));
         }
-        let rgb = sum.par_iter().map(|s| [0, 1, 2].map(|i| (s[i] / s[3].max(1.0)) as f32)).collect();
-        Linear { size: self.size, rgb, kind }
+        let rgb = sum
+            .par_iter()
+            .map(|s| [0, 1, 2].map(|i| (s[i] / s[3].max(1.0)) as f32))
+            .collect();
+        Linear {
+            size: self.size,
+            rgb,
+            kind,
+        }
     }
 
     /// relMSE of the even samples' mean against the odd ones'.
@@ -105,7 +131,12 @@ impl Sums {
     }
 
     /// Means and noise of all parts; `halves`: also the means of the even and of the odd samples.
-    pub fn reference(&self, graph: &Graph, folder: &Path, halves: bool) -> Result<Reference, LabError> {
+    pub fn reference(
+        &self,
+        graph: &Graph,
+        folder: &Path,
+        halves: bool,
+    ) -> Result<Reference, LabError> {
         let part = |LightPart { name, kind, .. }: &LightPart| {
             let [even, odd] = [0, 1].map(|half| self.mean(name, *kind, &[half]));
             let failed = |e: MetricError| wrong(name, &e);
@@ -114,10 +145,26 @@ impl Sums {
                 structure: structure_noise(&even, &odd).map_err(failed)?,
             };
             let halves = halves.then_some([even, odd]);
-            Ok((name.clone(), ReferencePart { mean: self.mean(name, *kind, &[0, 1]), noise, halves }))
+            Ok((
+                name.clone(),
+                ReferencePart {
+                    mean: self.mean(name, *kind, &[0, 1]),
+                    noise,
+                    halves,
+                },
+            ))
         };
-        let parts = graph.parts.iter().map(part).collect::<Result<_, LabError>>()?;
-        Ok(Reference { size: self.size, samples: self.samples, parts, folder: folder.to_path_buf() })
+        let parts = graph
+            .parts
+            .iter()
+            .map(part)
+            .collect::<Result<_, LabError>>()?;
+        Ok(Reference {
+            size: self.size,
+            samples: self.samples,
+            parts,
+            folder: folder.to_path_buf(),
+        })
     }
 }
 
@@ -130,12 +177,21 @@ fn failed(path: &Path, why: impl std::fmt::Display) -> LabError {
 }
 
 /// Writes sums into a folder, in place of those that `reference.json` names.
-pub(super) fn write(folder: &Path, sums: &Sums, traced: &Experiment, device: &DeviceInfo) -> Result<(), LabError> {
+pub(super) fn write(
+    folder: &Path,
+    sums: &Sums,
+    traced: &Experiment,
+    device: &DeviceInfo,
+) -> Result<(), LabError> {
     let name = format!("sums-{}.exr", sums.samples);
     let file = folder.join(&name);
     let bytes = encode(sums).map_err(|e| failed(&file, e))?;
     crate::files::write_whole(&file, &bytes)?;
-    let noise = sums.parts.keys().map(|p| Ok((p.clone(), sums.noise(p)?))).collect::<Result<_, LabError>>()?;
+    let noise = sums
+        .parts
+        .keys()
+        .map(|p| Ok((p.clone(), sums.noise(p)?)))
+        .collect::<Result<_, LabError>>()?;
     let record = Record {
         schema: SCHEMA.into(),
         sums: name,
@@ -145,7 +201,11 @@ pub(super) fn write(folder: &Path, sums: &Sums, traced: &Experiment, device: &De
         noise,
         experiment: traced.name.clone(),
         scene: traced.scene.clone(),
-        params: traced.params.iter().map(|(n, v)| (n.value.clone(), v.clone())).collect(),
+        params: traced
+            .params
+            .iter()
+            .map(|(n, v)| (n.value.clone(), v.clone()))
+            .collect(),
         device: device.name.clone(),
         driver: device.driver.clone(),
     };
@@ -166,8 +226,12 @@ fn encode(sums: &Sums) -> Result<Vec<u8>, exr::error::Error> {
     let mut layers = exr::prelude::SmallVec::new();
     for (part, halves) in &sums.parts {
         for (half, texels) in halves.iter().enumerate() {
-            let channel =
-                |name: &str, i: usize| AnyChannel::new(name, FlatSamples::F32(texels.iter().map(|t| t[i]).collect()));
+            let channel = |name: &str, i: usize| {
+                AnyChannel::new(
+                    name,
+                    FlatSamples::F32(texels.iter().map(|t| t[i]).collect()),
+                )
+            };
             let list = [("R", 0), ("G", 1), ("B", 2), ("A", 3)].map(|(name, i)| channel(name, i));
             let attributes = LayerAttributes::named(format!("{part}.{half}").as_str());
             layers.push(Layer::new(
@@ -181,22 +245,38 @@ fn encode(sums: &Sums) -> Result<Vec<u8>, exr::error::Error> {
     let mut out = Cursor::new(Vec::new());
     let window = exr::meta::header::ImageAttributes::with_size(size);
     // Threads would write the chunks in whatever order they were compressed: the same sums must be the same bytes.
-    Image::from_layers(window, layers).write().non_parallel().to_buffered(&mut out)?;
+    Image::from_layers(window, layers)
+        .write()
+        .non_parallel()
+        .to_buffered(&mut out)?;
     Ok(out.into_inner())
 }
 
 /// `reference.json` of a folder; `None` without one.
 fn read_record(json: &Path) -> Result<Option<Record>, LabError> {
-    let Ok(text) = read_input(json, MAX_JSON) else { return Ok(None) };
-    serde_json::from_slice(&text).map(Some).map_err(|e| failed(json, format!("{e}; delete the folder")))
+    let Ok(text) = read_input(json, MAX_JSON) else {
+        return Ok(None);
+    };
+    serde_json::from_slice(&text)
+        .map(Some)
+        .map_err(|e| failed(json, format!("{e}; delete the folder")))
 }
 
 /// The sums in a folder; `None` without `reference.json`, or without the sums that it names.
-pub(super) fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Option<Sums>, LabError> {
+pub(super) fn read(
+    folder: &Path,
+    size: (u32, u32),
+    graph: &Graph,
+) -> Result<Option<Sums>, LabError> {
     let json = folder.join("reference.json");
-    let Some(record) = read_record(&json)? else { return Ok(None) };
+    let Some(record) = read_record(&json)? else {
+        return Ok(None);
+    };
     if record.schema != SCHEMA || record.size != size || !record.names_sums() {
-        return Err(failed(&json, "it is not what this program wrote; delete the folder"));
+        return Err(failed(
+            &json,
+            "it is not what this program wrote; delete the folder",
+        ));
     }
     let file = folder.join(&record.sums);
     // Another process may have deleted them after its own sums replaced these.
@@ -208,8 +288,8 @@ pub(super) fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Opt
     if hex(&Sha256::digest(&bytes)) != record.sha256 {
         return Err(wrong("its content is not what was written"));
     }
-    let meta =
-        exr::meta::MetaData::read_from_buffered(Cursor::new(&bytes), false).map_err(|e| wrong(&e.to_string()))?;
+    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(&bytes), false)
+        .map_err(|e| wrong(&e.to_string()))?;
     // Before the texels: sizes decide how much memory is taken.
     let fits = |h: &exr::meta::header::Header| {
         (h.layer_size.width(), h.layer_size.height()) == (size.0 as usize, size.1 as usize)
@@ -231,23 +311,37 @@ pub(super) fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Opt
     for (part, halves) in &mut sums.parts {
         for (half, texels) in halves.iter_mut().enumerate() {
             let name = format!("{part}.{half}");
-            let layer = image
-                .layer_data
-                .iter()
-                .find(|l| l.attributes.layer_name.as_ref().is_some_and(|n| *n == *name.as_str()));
+            let layer = image.layer_data.iter().find(|l| {
+                l.attributes
+                    .layer_name
+                    .as_ref()
+                    .is_some_and(|n| *n == *name.as_str())
+            });
             let layer = layer.ok_or_else(|| wrong(&format!("it has no layer '{name}'")))?;
             for (channel, i) in [("R", 0), ("G", 1), ("B", 2), ("A", 3)] {
                 let found = layer.channel_data.list.iter().find(|c| c.name == *channel);
                 match found.map(|c| &c.sample_data) {
-                    Some(FlatSamples::F32(values)) => texels.iter_mut().zip(values).for_each(|(t, v)| t[i] = *v),
-                    _ => return Err(wrong(&format!("layer '{name}' has no channel {channel} of 32-bit floats"))),
+                    Some(FlatSamples::F32(values)) => {
+                        texels.iter_mut().zip(values).for_each(|(t, v)| t[i] = *v)
+                    }
+                    _ => {
+                        return Err(wrong(&format!(
+                            "layer '{name}' has no channel {channel} of 32-bit floats"
+                        )));
+                    }
                 }
             }
         }
     }
-    let counted = |texels: &Vec<[f32; 4]>| texels.iter().all(|t| f64::from(t[3]) * 2.0 == record.samples as f64);
+    let counted = |texels: &Vec<[f32; 4]>| {
+        texels
+            .iter()
+            .all(|t| f64::from(t[3]) * 2.0 == record.samples as f64)
+    };
     if !sums.parts.values().flatten().all(counted) {
-        return Err(wrong("it does not hold as many samples as reference.json says"));
+        return Err(wrong(
+            "it does not hold as many samples as reference.json says",
+        ));
     }
     keep_noise(&json, record, &sums)?;
     Ok(Some(sums))
@@ -255,10 +349,20 @@ pub(super) fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Opt
 
 /// Writes the noise that the sums have into their description, if it says something else. Nobody computes with what it says.
 fn keep_noise(json: &Path, mut record: Record, sums: &Sums) -> Result<(), LabError> {
-    let noise: BTreeMap<String, f64> =
-        sums.parts.keys().map(|p| Ok((p.clone(), sums.noise(p)?))).collect::<Result<_, LabError>>()?;
-    let same = |a: f64, b: f64| a == b || (a - b).abs() <= 1e-9 * a.abs().max(b.abs()) || a.is_nan() && b.is_nan();
-    let kept = noise.iter().all(|(part, value)| record.noise.get(part).is_some_and(|told| same(*told, *value)));
+    let noise: BTreeMap<String, f64> = sums
+        .parts
+        .keys()
+        .map(|p| Ok((p.clone(), sums.noise(p)?)))
+        .collect::<Result<_, LabError>>()?;
+    let same = |a: f64, b: f64| {
+        a == b || (a - b).abs() <= 1e-9 * a.abs().max(b.abs()) || a.is_nan() && b.is_nan()
+    };
+    let kept = noise.iter().all(|(part, value)| {
+        record
+            .noise
+            .get(part)
+            .is_some_and(|told| same(*told, *value))
+    });
     if kept && noise.len() == record.noise.len() {
         return Ok(());
     }

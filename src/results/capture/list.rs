@@ -18,8 +18,13 @@ pub struct Summary {
 
 /// The captures of a folder by name, broken ones too. What is in the making, or no capture, is left out.
 pub fn list(folder: &Path) -> Vec<Summary> {
-    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
-    let mut list: Vec<Summary> = entries.flatten().filter_map(|e| summary(&e.path())).collect();
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return Vec::new();
+    };
+    let mut list: Vec<Summary> = entries
+        .flatten()
+        .filter_map(|e| summary(&e.path()))
+        .collect();
     list.sort_by(|a, b| a.name.cmp(&b.name));
     list
 }
@@ -30,14 +35,22 @@ fn summary(folder: &Path) -> Option<Summary> {
     if name.starts_with('.') || !(has(MANIFEST) || has(EXPERIMENT)) {
         return None;
     }
-    let manifest = Manifest::read(folder).map_err(|e| e.to_string()).and_then(|manifest| {
-        match manifest.files.keys().find(|f| !has(f)) {
-            Some(missing) => Err(format!("'{}': the file '{missing}' is missing", folder.display())),
+    let manifest = Manifest::read(folder)
+        .map_err(|e| e.to_string())
+        .and_then(|manifest| match manifest.files.keys().find(|f| !has(f)) {
+            Some(missing) => Err(format!(
+                "'{}': the file '{missing}' is missing",
+                folder.display()
+            )),
             None => Ok(manifest),
-        }
-    });
+        });
     let picture = Some(folder.join("picture.png")).filter(|p| p.is_file());
-    Some(Summary { name, folder: folder.to_path_buf(), manifest, picture })
+    Some(Summary {
+        name,
+        folder: folder.to_path_buf(),
+        manifest,
+        picture,
+    })
 }
 
 /// Removes what programs that no longer run have left of captures, and returns how many folders that were. Where the
@@ -47,13 +60,16 @@ pub fn sweep_partials(folder: &Path) -> usize {
     if !processes.join("self").exists() {
         return 0;
     }
-    let Ok(entries) = std::fs::read_dir(folder) else { return 0 };
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return 0;
+    };
     let left = entries.flatten().filter(|entry| {
         let name = entry.file_name().to_string_lossy().into_owned();
         let is_folder = entry.file_type().is_ok_and(|t| t.is_dir());
         is_folder && partial_of(&name).is_some_and(|pid| !processes.join(pid.to_string()).exists())
     });
-    left.filter(|entry| std::fs::remove_dir_all(entry.path()).is_ok()).count()
+    left.filter(|entry| std::fs::remove_dir_all(entry.path()).is_ok())
+        .count()
 }
 
 /// The process that makes, or made, the capture in a folder of this name.

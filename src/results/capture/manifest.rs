@@ -85,20 +85,25 @@ impl Manifest {
         let path = folder.join(MANIFEST);
         let text = crate::files::read_input_text(&path, MAX_BYTES)
             .map_err(|e| failed(&path, format!("cannot read it: {e}")))?;
-        let manifest: Manifest =
-            serde_json::from_str(&text).map_err(|e| failed(&path, format!("it is damaged: {e}")))?;
+        let manifest: Manifest = serde_json::from_str(&text)
+            .map_err(|e| failed(&path, format!("it is damaged: {e}")))?;
         manifest.check(folder).map_err(|e| failed(&path, e))?;
         Ok(manifest)
     }
 
     fn check(&self, folder: &Path) -> Result<(), String> {
         if self.schema != SCHEMA {
-            return Err(format!("its schema is '{}', this program reads '{SCHEMA}'", self.schema));
+            return Err(format!(
+                "its schema is '{}', this program reads '{SCHEMA}'",
+                self.schema
+            ));
         }
         check_size((self.size[0], self.size[1]))?;
         check_frames(self.frames, self.step)?;
         if self.files.len() > MAX_FILES || self.images.is_empty() || self.images.len() > MAX_FILES {
-            return Err(format!("it must name 1 to {MAX_FILES} pictures and at most {MAX_FILES} files"));
+            return Err(format!(
+                "it must name 1 to {MAX_FILES} pictures and at most {MAX_FILES} files"
+            ));
         }
         for file in self.files.keys() {
             inside(folder, file)?;
@@ -109,10 +114,16 @@ impl Manifest {
         }
         for image in &self.images {
             if !self.files.contains_key(&image.file) {
-                return Err(format!("it has no checksum of the picture '{}'", image.file));
+                return Err(format!(
+                    "it has no checksum of the picture '{}'",
+                    image.file
+                ));
             }
             if !image.file.ends_with(".png") && !image.file.ends_with(".exr") {
-                return Err(format!("the picture '{}' is neither .png nor .exr", image.file));
+                return Err(format!(
+                    "the picture '{}' is neither .png nor .exr",
+                    image.file
+                ));
             }
         }
         if !self.files.contains_key(EXPERIMENT) {
@@ -125,7 +136,9 @@ impl Manifest {
 /// Whether a capture can be of so many frames, so far apart.
 pub(super) fn check_frames(frames: usize, step: f64) -> Result<(), String> {
     if frames == 0 || frames > MAX_FRAMES || !step.is_finite() {
-        return Err(format!("frames must be 1 to {MAX_FRAMES}, and the step finite"));
+        return Err(format!(
+            "frames must be 1 to {MAX_FRAMES}, and the step finite"
+        ));
     }
     Ok(())
 }
@@ -171,7 +184,11 @@ fn below(folder: &Path, wanted: &dyn Fn(FileType) -> bool) -> std::io::Result<Ve
         for entry in std::fs::read_dir(folder.join(&at))? {
             let entry = entry?;
             let name = entry.file_name().to_string_lossy().into_owned();
-            let path = if at.is_empty() { name } else { format!("{at}/{name}") };
+            let path = if at.is_empty() {
+                name
+            } else {
+                format!("{at}/{name}")
+            };
             let kind = entry.file_type()?;
             if kind.is_dir() {
                 open.push(path);

@@ -38,7 +38,10 @@ fn failed(path: &Path, error: impl std::fmt::Display) -> LabError {
 fn experiment_of(folder: &Path, manifest_name: &str) -> Result<Experiment, LabError> {
     let mut experiment = Experiment::read(&folder.join(EXPERIMENT)).map_err(LabError::Input)?;
     if Path::new(&experiment.graph).file_name() != Some(experiment.graph.as_ref()) {
-        return Err(failed(&folder.join(EXPERIMENT), "its graph must be a bare file name"));
+        return Err(failed(
+            &folder.join(EXPERIMENT),
+            "its graph must be a bare file name",
+        ));
     }
     experiment.graph = spec_of(&folder.join(SOURCES).join("passes").join(&experiment.graph));
     experiment.name = manifest_name.into();
@@ -61,14 +64,24 @@ fn render(
     (frames, step): (Option<usize>, f64),
     wanted: impl FnOnce(&Graph) -> Result<Vec<Image>, LabError>,
 ) -> Result<Rendered, LabError> {
-    let home = Workspace { root: folder.join(SOURCES), cache: lab.home.cache.clone() };
-    let lab = Lab { home, gpu: lab.gpu.clone() };
+    let home = Workspace {
+        root: folder.join(SOURCES),
+        cache: lab.home.cache.clone(),
+    };
+    let lab = Lab {
+        home,
+        gpu: lab.gpu.clone(),
+    };
     let mut chosen = Vec::new();
     let (mut session, _) = lab.prepare(experiment, scene, |graph| {
         chosen = wanted(graph)?;
         Ok(chosen.iter().map(|i| i.texture.clone()).collect())
     })?;
-    let frames = frames.unwrap_or(if step == 0.0 { session.converging_frames() } else { 1 });
+    let frames = frames.unwrap_or(if step == 0.0 {
+        session.converging_frames()
+    } else {
+        1
+    });
     let mut times = Vec::new();
     for _ in 0..frames {
         times.extend(session.frame(step)?);
@@ -80,6 +93,17 @@ fn render(
         let texels = session.texels(&image.texture, image.mip, image.layer)?;
         images.push((image, texels));
     }
-    let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, 0, warnings);
-    Ok(Rendered { images, frames, stats })
+    let stats = stats::collect(
+        &lab.gpu.info,
+        &experiment.name,
+        &session,
+        &times,
+        0,
+        warnings,
+    );
+    Ok(Rendered {
+        images,
+        frames,
+        stats,
+    })
 }

@@ -82,7 +82,10 @@ pub fn replay(
         }
     }
     let frames = (Some(manifest.frames), manifest.step);
-    let images = render(lab, folder, &experiment, scene, frames, |_| Ok(manifest.images.clone()))?.images;
+    let images = render(lab, folder, &experiment, scene, frames, |_| {
+        Ok(manifest.images.clone())
+    })?
+    .images;
     for (image, texels) in &images {
         result.images += 1;
         result.texels += texels.extent.iter().product::<u32>() as usize;
@@ -99,10 +102,22 @@ fn compare(folder: &Path, image: &Image, texels: &Texels) -> Option<Difference> 
     let [width, height, depth] = texels.extent;
     let of = texels.extent.iter().product::<u32>() as usize;
     let (new, channels) = match image.file.ends_with(".png") {
-        true => (picture::rgb8(texels).into_iter().map(f32::from).collect::<Vec<f32>>(), 3),
+        true => (
+            picture::rgb8(texels)
+                .into_iter()
+                .map(f32::from)
+                .collect::<Vec<f32>>(),
+            3,
+        ),
         false => (texels.floats().into_flattened(), 4),
     };
-    let mut difference = Difference { file: image.file.clone(), texels: 0, of, largest: 0.0, broken: None };
+    let mut difference = Difference {
+        file: image.file.clone(),
+        texels: 0,
+        of,
+        largest: 0.0,
+        broken: None,
+    };
     let old = match picture::read(&path, (width, height * depth)) {
         Ok(old) => old,
         Err(e) => {
@@ -115,7 +130,11 @@ fn compare(folder: &Path, image: &Image, texels: &Texels) -> Option<Difference> 
         for (a, b) in a.iter().zip(b).filter(|(a, b)| a.to_bits() != b.to_bits()) {
             differs = true;
             let distance = (f64::from(*a) - f64::from(*b)).abs();
-            difference.largest = difference.largest.max(if distance.is_nan() { f64::INFINITY } else { distance });
+            difference.largest = difference.largest.max(if distance.is_nan() {
+                f64::INFINITY
+            } else {
+                distance
+            });
         }
         difference.texels += usize::from(differs);
     }

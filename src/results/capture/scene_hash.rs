@@ -12,10 +12,16 @@ pub fn scene_hash(scene: &Scene) -> String {
     hash.count(scene.meshes.len());
     for mesh in &scene.meshes {
         let mut bytes = Vec::with_capacity(mesh.vertices.len() * PLAIN);
-        mesh.vertices.iter().for_each(|v| bytes.extend_from_slice(&bytemuck::bytes_of(v)[..PLAIN]));
+        mesh.vertices
+            .iter()
+            .for_each(|v| bytes.extend_from_slice(&bytemuck::bytes_of(v)[..PLAIN]));
         hash.bytes(&bytes);
         hash.words(&mesh.indices);
-        let parts: Vec<u32> = mesh.submeshes.iter().flat_map(|p| [p.first_index, p.index_count, p.material]).collect();
+        let parts: Vec<u32> = mesh
+            .submeshes
+            .iter()
+            .flat_map(|p| [p.first_index, p.index_count, p.material])
+            .collect();
         hash.words(&parts);
     }
     hash.count(scene.materials.len());
@@ -24,7 +30,12 @@ pub fn scene_hash(scene: &Scene) -> String {
         hash.floats(&m.emission.to_array());
         hash.floats(&[m.metallic, m.roughness, m.alpha_cutoff, m.normal_scale]);
         hash.words(&[u32::from(m.two_sided)]);
-        let textures = [m.base_color_texture, m.metallic_roughness_texture, m.normal_texture, m.emission_texture];
+        let textures = [
+            m.base_color_texture,
+            m.metallic_roughness_texture,
+            m.normal_texture,
+            m.emission_texture,
+        ];
         hash.words(&textures.map(|t| t.unwrap_or(u32::MAX)));
     }
     hash.count(scene.textures.len());
@@ -51,17 +62,26 @@ pub fn scene_hash(scene: &Scene) -> String {
         };
         hash.words(&[kind, u32::from(light.shadow)]);
         hash.floats(&[inner, outer]);
-        [light.color, light.position, light.direction].iter().for_each(|v| hash.floats(&v.to_array()));
+        [light.color, light.position, light.direction]
+            .iter()
+            .for_each(|v| hash.floats(&v.to_array()));
     }
     // Those that differ from nearly all alone: of other scenes the hash is what it was before there were any.
     let plain = Material::default().dielectric();
-    for (i, m) in (0u32..).zip(&scene.materials).filter(|(_, m)| m.dielectric() != plain) {
+    for (i, m) in (0u32..)
+        .zip(&scene.materials)
+        .filter(|(_, m)| m.dielectric() != plain)
+    {
         hash.words(&[i]);
         hash.floats(&m.dielectric().to_array());
     }
     // Likewise.
     for (i, mesh) in (0u32..).zip(&scene.meshes) {
-        if mesh.vertices.iter().any(|v| (v.color, v.uv_second) != (Vertex::default().color, [0.0; 2])) {
+        if mesh
+            .vertices
+            .iter()
+            .any(|v| (v.color, v.uv_second) != (Vertex::default().color, [0.0; 2]))
+        {
             hash.words(&[i]);
             let more = |v: &Vertex| [v.uv_second.as_slice(), &v.color].concat();
             hash.floats(&mesh.vertices.iter().flat_map(more).collect::<Vec<f32>>());
@@ -103,11 +123,25 @@ fn hash_motion(scene: &Scene, hash: &mut Hash) {
         for v in &d.rest {
             hash.floats(&[v.position.as_slice(), &v.normal, &v.tangent].concat());
         }
-        let vectors = d.morphs.iter().flat_map(|m| [&m.positions, &m.normals, &m.tangents]).flatten();
+        let vectors = d
+            .morphs
+            .iter()
+            .flat_map(|m| [&m.positions, &m.normals, &m.tangents])
+            .flatten();
         hash.floats(&vectors.flat_map(|v| v.to_array()).collect::<Vec<f32>>());
         hash.bytes(format!("{:?} {:?} {:?}", d.weights, d.period, d.joints).as_bytes());
-        hash.words(&d.influences.iter().flat_map(|i| [i.joint, i.weight.to_bits()]).collect::<Vec<u32>>());
-        hash.words(&d.influenced.iter().flat_map(|r| [r.start, r.end]).collect::<Vec<u32>>());
+        hash.words(
+            &d.influences
+                .iter()
+                .flat_map(|i| [i.joint, i.weight.to_bits()])
+                .collect::<Vec<u32>>(),
+        );
+        hash.words(
+            &d.influenced
+                .iter()
+                .flat_map(|r| [r.start, r.end])
+                .collect::<Vec<u32>>(),
+        );
     }
 }
 

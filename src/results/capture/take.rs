@@ -2,8 +2,8 @@
 
 use super::manifest::{check_frames, files_below, hash_file};
 use super::{
-    EXPERIMENT, Image, MANIFEST, Manifest, Rendered, SCHEMA, SOURCES, SceneRecord, experiment_of, failed, render,
-    scene_hash,
+    EXPERIMENT, Image, MANIFEST, Manifest, Rendered, SCHEMA, SOURCES, SceneRecord, experiment_of,
+    failed, render, scene_hash,
 };
 use crate::experiment::{Experiment, checked_name, resolved_text};
 use crate::graph::Graph;
@@ -50,7 +50,10 @@ pub struct What {
 pub fn free_name(folder: &Path, name: &str) -> String {
     let free = |n: &String| !folder.join(n).exists();
     let numbered = (2u32..).map(|i| format!("{name}-{i}"));
-    std::iter::once(name.to_string()).chain(numbered).find(free).unwrap_or_else(|| name.to_string())
+    std::iter::once(name.to_string())
+        .chain(numbered)
+        .find(free)
+        .unwrap_or_else(|| name.to_string())
 }
 
 /// Renders an experiment afresh and keeps pictures, sources, settings and measurements in `folder/name`. Nothing is
@@ -76,40 +79,83 @@ pub fn take(
     std::fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
     // The number says later whether the program that writes here still runs.
     let prefix = format!(".{name}.partial-{}-", std::process::id());
-    let partial = tempfile::Builder::new().prefix(&prefix).tempdir_in(folder).map_err(|e| failed(folder, e))?;
+    let partial = tempfile::Builder::new()
+        .prefix(&prefix)
+        .tempdir_in(folder)
+        .map_err(|e| failed(folder, e))?;
     let path = partial.path();
 
-    let graph_file =
-        write_sources(&graph, &linked, &lab.home.graph_path(&experiment.graph), &lab.home.folders(), path)?;
+    let graph_file = write_sources(
+        &graph,
+        &linked,
+        &lab.home.graph_path(&experiment.graph),
+        &lab.home.folders(),
+        path,
+    )?;
     let scene = experiment.adapted(scene)?;
     let camera = camera_of(experiment, &scene)?;
     let mut resolved = experiment.clone();
     resolved.graph.clone_from(&graph_file);
     // From here on only what the capture holds is used, so that what is missing in it is missed now.
-    let text = resolved_text(&resolved, &graph.params, &camera, &scene, &path.join(EXPERIMENT))?;
+    let text = resolved_text(
+        &resolved,
+        &graph.params,
+        &camera,
+        &scene,
+        &path.join(EXPERIMENT),
+    )?;
     write(&path.join(EXPERIMENT), text.as_bytes())?;
     let resolved = experiment_of(path, &experiment.name)?;
     let scene = resolved.adapted(scene)?;
     let sha256 = scene_hash(&scene);
     let scene_name = scene.name.clone();
-    let Rendered { images, frames, stats } =
-        render(lab, path, &resolved, scene, (what.frames, what.step), |graph| images_of(graph, &what.resources))?;
+    let Rendered {
+        images,
+        frames,
+        stats,
+    } = render(
+        lab,
+        path,
+        &resolved,
+        scene,
+        (what.frames, what.step),
+        |graph| images_of(graph, &what.resources),
+    )?;
     for (image, texels) in &images {
         let file = path.join(&image.file);
-        let bytes = if image.file.ends_with(".png") { picture::png(texels)? } else { picture::exr(texels)? };
+        let bytes = if image.file.ends_with(".png") {
+            picture::png(texels)?
+        } else {
+            picture::exr(texels)?
+        };
         write(&file, &bytes)?;
     }
     if what.timers != Rows::None
         && let Some((_, texels)) = images.iter().find(|i| i.0.file == "picture.png")
     {
-        let medians = stats
-            .passes
-            .iter()
-            .filter_map(|p| Some((graph.passes.iter().position(|x| x.value.name.value == p.name)?, p.gpu_ms.median)));
+        let medians = stats.passes.iter().filter_map(|p| {
+            Some((
+                graph
+                    .passes
+                    .iter()
+                    .position(|x| x.value.name.value == p.name)?,
+                p.gpu_ms.median,
+            ))
+        });
         let params = resolved.params_over(&graph.params)?;
         let size = experiment.size.into();
-        let timers = Timers::new(what.timers, &graph, &params, &stats.device.name, size, &medians.collect::<Vec<_>>());
-        write(&path.join("timers.png"), &picture::png(&stamped(&lab.gpu, texels, &timers)?)?)?;
+        let timers = Timers::new(
+            what.timers,
+            &graph,
+            &params,
+            &stats.device.name,
+            size,
+            &medians.collect::<Vec<_>>(),
+        );
+        write(
+            &path.join("timers.png"),
+            &picture::png(&stamped(&lab.gpu, texels, &timers)?)?,
+        )?;
     }
     write(&path.join("stats.json"), &json(&stats)?)?;
     let mut files = BTreeMap::new();
@@ -125,7 +171,11 @@ pub fn take(
         when: rfc3339(SystemTime::now()),
         experiment: experiment.name.clone(),
         graph: graph_file,
-        scene: SceneRecord { spec: experiment.scene.clone(), name: scene_name, sha256 },
+        scene: SceneRecord {
+            spec: experiment.scene.clone(),
+            name: scene_name,
+            sha256,
+        },
         size: [experiment.size.0, experiment.size.1],
         frames,
         step: what.step,
@@ -141,9 +191,18 @@ pub fn take(
 }
 
 /// Renames a finished capture. Renaming never replaces a folder that has files.
-fn publish(finished: &Path, folder: &Path, name: &str, numbered: bool) -> Result<PathBuf, LabError> {
+fn publish(
+    finished: &Path,
+    folder: &Path,
+    name: &str,
+    numbered: bool,
+) -> Result<PathBuf, LabError> {
     loop {
-        let target = folder.join(if numbered { free_name(folder, name) } else { name.into() });
+        let target = folder.join(if numbered {
+            free_name(folder, name)
+        } else {
+            name.into()
+        });
         match std::fs::rename(finished, &target) {
             Ok(()) => return Ok(target),
             // Another process took the name since it was found free.
@@ -195,27 +254,49 @@ fn write_sources(
     capture: &Path,
 ) -> Result<String, LabError> {
     let sources = capture.join(SOURCES);
-    let main_name = main.file_name().and_then(|n| n.to_str()).ok_or_else(|| failed(main, "it is no graph file"))?;
+    let main_name = main
+        .file_name()
+        .and_then(|n| n.to_str())
+        .ok_or_else(|| failed(main, "it is no graph file"))?;
     let mut wanted: BTreeMap<PathBuf, &str> = BTreeMap::new();
     for (file, text) in graph.sources.texts() {
         let name = match file == main {
             true => Path::new(main_name),
             false => file.strip_prefix(&folders.passes).unwrap_or(file),
         };
-        if name.components().any(|c| !matches!(c, Component::Normal(_))) {
-            return Err(failed(file, "it lies outside the folder of graphs and cannot be captured; move it there"));
+        if name
+            .components()
+            .any(|c| !matches!(c, Component::Normal(_)))
+        {
+            return Err(failed(
+                file,
+                "it lies outside the folder of graphs and cannot be captured; move it there",
+            ));
         }
-        if wanted.insert(Path::new("passes").join(name), text).is_some_and(|other| other != text) {
-            return Err(failed(file, format!("an include has the name of the graph, '{main_name}'; rename one")));
+        if wanted
+            .insert(Path::new("passes").join(name), text)
+            .is_some_and(|other| other != text)
+        {
+            return Err(failed(
+                file,
+                format!("an include has the name of the graph, '{main_name}'; rename one"),
+            ));
         }
     }
     // What the graph makes comes from its parameters. The files of other options go along: a capture can be varied.
     let generated = generated(graph, &graph.params);
     let compiler = ShaderCompiler::new(&folders.shaders, None);
     let options = graph.params.list.iter().flat_map(|p| &p.files);
-    let others: Vec<_> = options.filter_map(|file| compiler.texts(file, &generated).ok()).collect();
+    let others: Vec<_> = options
+        .filter_map(|file| compiler.texts(file, &generated).ok())
+        .collect();
     let compiled = linked.iter().flat_map(|l| &l.stages).map(|s| &*s.texts);
-    for (name, text) in others.iter().chain(compiled).flatten().filter(|t| !generated.contains_key(t.0)) {
+    for (name, text) in others
+        .iter()
+        .chain(compiled)
+        .flatten()
+        .filter(|t| !generated.contains_key(t.0))
+    {
         wanted.insert(Path::new("shaders").join(name), text);
     }
     // Graphs without shaders have an empty folder.
@@ -229,22 +310,48 @@ fn write_sources(
 /// The pictures of a capture: the graph's results, then what was asked for.
 fn images_of(graph: &Graph, resources: &[Resource]) -> Result<Vec<Image>, LabError> {
     let result = |name: &Option<String>, file: &str| {
-        name.clone().map(|texture| Image { file: file.into(), texture, mip: 0, layer: 0 })
+        name.clone().map(|texture| Image {
+            file: file.into(),
+            texture,
+            mip: 0,
+            layer: 0,
+        })
     };
-    let mut images: Vec<Image> =
-        result(&graph.output, "picture.png").into_iter().chain(result(&graph.hdr, "picture.exr")).collect();
+    let mut images: Vec<Image> = result(&graph.output, "picture.png")
+        .into_iter()
+        .chain(result(&graph.hdr, "picture.exr"))
+        .collect();
     for r in resources {
         if graph.texture(&r.name).is_none() {
             return Err(no_texture(graph, &r.name));
         }
-        let part = |n: u32, what: &str| if n > 0 { format!("-{what}{n}") } else { String::new() };
-        let file = format!("resources/{}{}{}.exr", r.name, part(r.mip, "mip"), part(r.layer, "layer"));
+        let part = |n: u32, what: &str| {
+            if n > 0 {
+                format!("-{what}{n}")
+            } else {
+                String::new()
+            }
+        };
+        let file = format!(
+            "resources/{}{}{}.exr",
+            r.name,
+            part(r.mip, "mip"),
+            part(r.layer, "layer")
+        );
         if !images.iter().any(|i| i.file == file) {
-            images.push(Image { file, texture: r.name.clone(), mip: r.mip, layer: r.layer });
+            images.push(Image {
+                file,
+                texture: r.name.clone(),
+                mip: r.mip,
+                layer: r.layer,
+            });
         }
     }
     if images.is_empty() {
-        let message = format!("graph '{}' has neither `output` nor `hdr`; name a texture to capture", graph.name);
+        let message = format!(
+            "graph '{}' has neither `output` nor `hdr`; name a texture to capture",
+            graph.name
+        );
         return Err(LabError::Request(message));
     }
     Ok(images)
@@ -259,6 +366,9 @@ mod tests {
         let day = Duration::from_secs(86_400);
         assert_eq!(rfc3339(UNIX_EPOCH - 1000 * day), "1970-01-01T00:00:00Z");
         assert_eq!(rfc3339(UNIX_EPOCH + day), "1970-01-02T00:00:00Z");
-        assert_eq!(rfc3339(UNIX_EPOCH + 4_000_000 * day), "9999-12-31T23:59:59Z");
+        assert_eq!(
+            rfc3339(UNIX_EPOCH + 4_000_000 * day),
+            "9999-12-31T23:59:59Z"
+        );
     }
 }

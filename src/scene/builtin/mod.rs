@@ -12,30 +12,66 @@ const ALL: &[(&str, &str, &str)] = &[
         "two-storey courtyard with arcades, coloured cloth, plants and a moving ornament",
         include_str!("atrium.ron"),
     ),
-    ("cornell", "the Cornell box, lit by its emitting quad alone", include_str!("cornell.ron")),
+    (
+        "cornell",
+        "the Cornell box, lit by its emitting quad alone",
+        include_str!("cornell.ron"),
+    ),
     (
         "furnace",
         "closed box with albedo 0.5 and emission 1 seen from inside: radiance 2 everywhere",
         include_str!("furnace.ron"),
     ),
-    ("white-sky", "white sphere under a white sky: it must vanish", include_str!("white-sky.ron")),
-    ("thin-walls", "slabs of 2, 4 and 8 cm before a bright wall: light must not leak", include_str!("thin-walls.ron")),
+    (
+        "white-sky",
+        "white sphere under a white sky: it must vanish",
+        include_str!("white-sky.ron"),
+    ),
+    (
+        "thin-walls",
+        "slabs of 2, 4 and 8 cm before a bright wall: light must not leak",
+        include_str!("thin-walls.ron"),
+    ),
     (
         "triangles",
         "needles, obtuse, huge, sub-voxel and diagonal triangles in a 4 m cube",
         include_str!("triangles.ron"),
     ),
-    ("moving-box", "a thin box that crosses a lit room", include_str!("moving-box.ron")),
-    ("blade", "a thin blade that turns before a lit wall", include_str!("blade.ron")),
-    ("small-quad", "a box of 2 m, lit by a quad of 47 x 38 cm close below its ceiling", include_str!("small-quad.ron")),
-    ("emitters", "a dim room with 108 emitters of 1 to 4 cm", include_str!("emitters.ron")),
+    (
+        "moving-box",
+        "a thin box that crosses a lit room",
+        include_str!("moving-box.ron"),
+    ),
+    (
+        "blade",
+        "a thin blade that turns before a lit wall",
+        include_str!("blade.ron"),
+    ),
+    (
+        "small-quad",
+        "a box of 2 m, lit by a quad of 47 x 38 cm close below its ceiling",
+        include_str!("small-quad.ron"),
+    ),
+    (
+        "emitters",
+        "a dim room with 108 emitters of 1 to 4 cm",
+        include_str!("emitters.ron"),
+    ),
     (
         "ceiling-panel",
         "an office lit by three panels in its ceiling: wide soft shadows",
         include_str!("ceiling-panel.ron"),
     ),
-    ("neon-tube", "a workshop lit by a tube of 2.6 cm under a reflector and a red one", include_str!("neon-tube.ron")),
-    ("lampshade", "a living room's corner lit by two bulbs of 6 cm in open shades", include_str!("lampshade.ron")),
+    (
+        "neon-tube",
+        "a workshop lit by a tube of 2.6 cm under a reflector and a red one",
+        include_str!("neon-tube.ron"),
+    ),
+    (
+        "lampshade",
+        "a living room's corner lit by two bulbs of 6 cm in open shades",
+        include_str!("lampshade.ron"),
+    ),
     (
         "huge-ground",
         "a class room of 12 m on a ground of 220 m: the volume's extent is not the room's",
@@ -46,10 +82,26 @@ const ALL: &[(&str, &str, &str)] = &[
         "the same class room 100 km from the origin: coordinates in steps of 8 mm",
         include_str!("far-away.ron"),
     ),
-    ("pocket", "a dollhouse room of 4 mm", include_str!("pocket.ron")),
-    ("plain", "a house of 8 m on a plane of 200 km", include_str!("plain.ron")),
-    ("blinds", "a room lit through slats of 25 mm before its window", include_str!("blinds.ron")),
-    ("door-ajar", "a dark room beside a bright one: light comes through a gap of 25 cm", include_str!("door-ajar.ron")),
+    (
+        "pocket",
+        "a dollhouse room of 4 mm",
+        include_str!("pocket.ron"),
+    ),
+    (
+        "plain",
+        "a house of 8 m on a plane of 200 km",
+        include_str!("plain.ron"),
+    ),
+    (
+        "blinds",
+        "a room lit through slats of 25 mm before its window",
+        include_str!("blinds.ron"),
+    ),
+    (
+        "door-ajar",
+        "a dark room beside a bright one: light comes through a gap of 25 cm",
+        include_str!("door-ajar.ron"),
+    ),
     (
         "corridor",
         "a corridor with two bends: light takes many turns from its end to the camera",
@@ -60,14 +112,26 @@ const ALL: &[(&str, &str, &str)] = &[
         "a street between tall houses with recessed windows and balconies under a grey sky",
         include_str!("street.ron"),
     ),
-    ("gloss", "glossy tiles and a mirror in a room with a window", include_str!("gloss.ron")),
-    ("foliage", "trees and bushes of small leaves, some cut out by a mask", include_str!("foliage.ron")),
+    (
+        "gloss",
+        "glossy tiles and a mirror in a room with a window",
+        include_str!("gloss.ron"),
+    ),
+    (
+        "foliage",
+        "trees and bushes of small leaves, some cut out by a mask",
+        include_str!("foliage.ron"),
+    ),
     (
         "sky-window",
         "a room that a picture of a clear sky lights through a window, sun and all",
         include_str!("sky-window.ron"),
     ),
-    ("vases", "a hall of fifty vases in relief, a million triangles", include_str!("vases.ron")),
+    (
+        "vases",
+        "a hall of fifty vases in relief, a million triangles",
+        include_str!("vases.ron"),
+    ),
 ];
 
 /// Names and one-line descriptions of all built-in scenes.
@@ -83,7 +147,10 @@ pub(super) fn is_one(name: &str) -> bool {
 /// The built-in scene of this name.
 pub(super) fn open(name: &str, progress: Progress) -> Result<Scene, SceneError> {
     let Some((_, _, text)) = ALL.iter().find(|entry| entry.0 == name) else {
-        return Err(SceneError::NotFound { spec: name.into(), hint: hint(name) });
+        return Err(SceneError::NotFound {
+            spec: name.into(),
+            hint: hint(name),
+        });
     };
     progress.step(name, 0.0)?;
     file::read(text, Path::new(&format!("{name}.ron")), progress)
@@ -92,7 +159,9 @@ pub(super) fn open(name: &str, progress: Progress) -> Result<Scene, SceneError> 
 /// What to say about a name that is none of them.
 pub(super) fn hint(name: &str) -> String {
     let names: Vec<&str> = list().map(|(name, _)| name).collect();
-    let nearest = names.iter().max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)));
+    let nearest = names
+        .iter()
+        .max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)));
     let all = names.join(", ");
     match nearest {
         Some(near) if strsim::jaro_winkler(near, name) > 0.7 => {
@@ -100,6 +169,8 @@ pub(super) fn hint(name: &str) -> String {
                 "did you mean '{near}'? Built-in scenes: {all}; otherwise give a .ron, .obj, .gltf, .glb or .fbx file"
             )
         }
-        _ => format!("built-in scenes: {all}; otherwise give a .ron, .obj, .gltf, .glb or .fbx file"),
+        _ => {
+            format!("built-in scenes: {all}; otherwise give a .ron, .obj, .gltf, .glb or .fbx file")
+        }
     }
 }

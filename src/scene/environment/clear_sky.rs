@@ -38,7 +38,13 @@ pub(in crate::scene) struct ClearSky {
 /// # Errors
 /// Numbers that are no sky.
 pub(in crate::scene) fn clear_sky(sky: &ClearSky) -> Result<Environment, String> {
-    let &ClearSky { width, sun, irradiance, zenith, ground } = sky;
+    let &ClearSky {
+        width,
+        sun,
+        irradiance,
+        zenith,
+        ground,
+    } = sky;
     let radiance = |c: Vec3| c.min_element() >= 0.0 && c.max_element() <= 1e12;
     if !(16..=4096).contains(&width)
         || sun.try_normalize().is_none()
@@ -57,14 +63,21 @@ pub(in crate::scene) fn clear_sky(sky: &ClearSky) -> Result<Environment, String>
         }
         // Paler where the air mass is larger.
         let pale = (1.0 - d.y).powi(3);
-        let colour = zenith.lerp(Vec3::splat(zenith.dot(Vec3::new(0.2126, 0.7152, 0.0722))), 0.7 * pale);
+        let colour = zenith.lerp(
+            Vec3::splat(zenith.dot(Vec3::new(0.2126, 0.7152, 0.0722))),
+            0.7 * pale,
+        );
         colour * relative_luminance(d, sun)
     };
     let texel = |i: u32| {
         let (x, y) = ((i % width) as f32, (i / width) as f32);
         sky(direction(place(x + 0.5, width), place(y + 0.5, height))).to_array()
     };
-    let mut level = Level { width, height, texels: (0..width * height).map(texel).collect() };
+    let mut level = Level {
+        width,
+        height,
+        texels: (0..width * height).map(texel).collect(),
+    };
     add_sun(&mut level, sun, irradiance);
     Ok(Environment::of(SkyPicture::new(level)))
 }
@@ -73,10 +86,13 @@ pub(in crate::scene) fn clear_sky(sky: &ClearSky) -> Result<Environment, String>
 /// sun.
 fn relative_luminance(d: Vec3, sun: Vec3) -> f32 {
     let gradation = |cosine: f32| 1.0 + A * (B / cosine.max(0.01)).exp();
-    let indicatrix =
-        |angle: f32| 1.0 + C * ((D * angle).exp() - (D * std::f32::consts::FRAC_PI_2).exp()) + E * angle.cos().powi(2);
+    let indicatrix = |angle: f32| {
+        1.0 + C * ((D * angle).exp() - (D * std::f32::consts::FRAC_PI_2).exp())
+            + E * angle.cos().powi(2)
+    };
     let to_sun = d.dot(sun).clamp(-1.0, 1.0).acos();
-    indicatrix(to_sun) * gradation(d.y) / (indicatrix(sun.y.clamp(-1.0, 1.0).acos()) * gradation(1.0))
+    indicatrix(to_sun) * gradation(d.y)
+        / (indicatrix(sun.y.clamp(-1.0, 1.0).acos()) * gradation(1.0))
 }
 
 /// Adds the sun's disc: each texel by how much of it the disc covers, scaled so that the whole has this irradiance.
@@ -91,15 +107,29 @@ fn add_sun(level: &mut Level, sun: Vec3, irradiance: Vec3) {
             continue;
         }
         let part = |n: u32| (n as f32 + 0.5) / SUN_SAMPLES as f32;
-        let samples = (0..SUN_SAMPLES * SUN_SAMPLES).map(|n| (part(n % SUN_SAMPLES), part(n / SUN_SAMPLES)));
-        let inside = samples.filter(|(dx, dy)| at(x as f32 + dx, y as f32 + dy).dot(sun) > cosine).count();
+        let samples =
+            (0..SUN_SAMPLES * SUN_SAMPLES).map(|n| (part(n % SUN_SAMPLES), part(n / SUN_SAMPLES)));
+        let inside = samples
+            .filter(|(dx, dy)| at(x as f32 + dx, y as f32 + dy).dot(sun) > cosine)
+            .count();
         if inside > 0 {
-            covered.push((i as usize, inside as f64 / f64::from(SUN_SAMPLES * SUN_SAMPLES)));
+            covered.push((
+                i as usize,
+                inside as f64 / f64::from(SUN_SAMPLES * SUN_SAMPLES),
+            ));
         }
     }
-    let size: f64 = covered.iter().map(|(i, share)| share * level.solid_angle(*i as u32 / level.width)).sum();
+    let size: f64 = covered
+        .iter()
+        .map(|(i, share)| share * level.solid_angle(*i as u32 / level.width))
+        .sum();
     for (i, share) in covered {
-        let radiance = irradiance.to_array().map(|e| (f64::from(e) * share / size) as f32);
-        level.texels[i].iter_mut().zip(radiance).for_each(|(t, r)| *t += r);
+        let radiance = irradiance
+            .to_array()
+            .map(|e| (f64::from(e) * share / size) as f32);
+        level.texels[i]
+            .iter_mut()
+            .zip(radiance)
+            .for_each(|(t, r)| *t += r);
     }
 }

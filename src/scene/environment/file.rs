@@ -18,12 +18,17 @@ const MAX_RADIANCE: f32 = 1e12;
 /// # Errors
 /// The text for the user: no such file, no such picture, too large.
 pub(crate) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Environment, String> {
-    let level =
-        caught(|| decode(path)).flatten().map_err(|problem| format!("environment '{}': {problem}", path.display()))?;
+    let level = caught(|| decode(path))
+        .flatten()
+        .map_err(|problem| format!("environment '{}': {problem}", path.display()))?;
     let mut warn = |what: String| warnings.push(format!("environment {}: {what}", path.display()));
     let level = checked(level, &mut warn);
     let picture = Arc::new(SkyPicture::new(level));
-    Ok(Environment { file: Some(path.into()), picture, rotation: 0.0 })
+    Ok(Environment {
+        file: Some(path.into()),
+        picture,
+        rotation: 0.0,
+    })
 }
 
 fn decode(path: &Path) -> Result<Level, String> {
@@ -34,20 +39,30 @@ fn decode(path: &Path) -> Result<Level, String> {
         .ok_or("not a Radiance HDR or OpenEXR picture")?;
     let image = decode_limited(&bytes, format)?.into_rgb32f();
     let (width, height) = image.dimensions();
-    Ok(Level { width, height, texels: image.pixels().map(|p| p.0).collect() })
+    Ok(Level {
+        width,
+        height,
+        texels: image.pixels().map(|p| p.0).collect(),
+    })
 }
 
 /// The picture without impossible numbers and not larger than is of use.
 fn checked(mut level: Level, warn: &mut dyn FnMut(String)) -> Level {
     let (width, height) = (level.width, level.height);
     if width != 2 * height {
-        warn(format!("{width}x{height} is not twice as wide as high; it is stretched over all directions"));
+        warn(format!(
+            "{width}x{height} is not twice as wide as high; it is stretched over all directions"
+        ));
     }
     let mut wrong = 0;
     for value in level.texels.iter_mut().flatten() {
         if !(*value >= 0.0 && *value <= MAX_RADIANCE) {
             wrong += 1;
-            *value = if *value > MAX_RADIANCE && value.is_finite() { MAX_RADIANCE } else { 0.0 };
+            *value = if *value > MAX_RADIANCE && value.is_finite() {
+                MAX_RADIANCE
+            } else {
+                0.0
+            };
         }
     }
     if wrong > 0 {

@@ -40,7 +40,11 @@ impl Level {
             };
             columns.iter().map(mean).collect::<Vec<_>>()
         };
-        Level { width, height, texels: rows.par_iter().flat_map_iter(row).collect() }
+        Level {
+            width,
+            height,
+            texels: rows.par_iter().flat_map_iter(row).collect(),
+        }
     }
 
     /// This and all coarser levels, the last of one texel.
@@ -71,7 +75,9 @@ mod tests {
     use super::*;
 
     fn mean(level: &Level) -> f64 {
-        let value = |(i, c): (usize, &[f32; 3])| level.solid_angle(i as u32 / level.width) * f64::from(c[1]);
+        let value = |(i, c): (usize, &[f32; 3])| {
+            level.solid_angle(i as u32 / level.width) * f64::from(c[1])
+        };
         level.texels.iter().enumerate().map(value).sum::<f64>() / (4.0 * PI)
     }
 
@@ -79,14 +85,30 @@ mod tests {
     fn every_level_has_the_mean_over_all_directions() {
         for (width, height) in [(64, 32), (37, 19), (5, 1), (1, 1)] {
             let texel = |i: u32| [0.0, ((i * 7919) % 101 + 1) as f32, 1.0];
-            let level = Level { width, height, texels: (0..width * height).map(texel).collect() };
+            let level = Level {
+                width,
+                height,
+                texels: (0..width * height).map(texel).collect(),
+            };
             let expected = mean(&level);
             let levels = level.chain();
-            let [.., last] = &levels[..] else { panic!("no levels") };
+            let [.., last] = &levels[..] else {
+                panic!("no levels")
+            };
             assert_eq!((last.width, last.height), (1, 1));
             for level in &levels {
-                assert!((mean(level) / expected - 1.0).abs() < 1e-5, "{}x{}", level.width, level.height);
-                assert!(level.texels.iter().all(|t| t[0] == 0.0 && (t[2] - 1.0).abs() < 1e-6));
+                assert!(
+                    (mean(level) / expected - 1.0).abs() < 1e-5,
+                    "{}x{}",
+                    level.width,
+                    level.height
+                );
+                assert!(
+                    level
+                        .texels
+                        .iter()
+                        .all(|t| t[0] == 0.0 && (t[2] - 1.0).abs() < 1e-6)
+                );
             }
         }
     }

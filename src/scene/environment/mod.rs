@@ -40,7 +40,8 @@ pub struct SkyPicture {
 
 impl PartialEq for Environment {
     fn eq(&self, other: &Environment) -> bool {
-        let same_picture = Arc::ptr_eq(&self.picture, &other.picture) || self.picture == other.picture;
+        let same_picture =
+            Arc::ptr_eq(&self.picture, &other.picture) || self.picture == other.picture;
         (&self.file, self.rotation) == (&other.file, other.rotation) && same_picture
     }
 }
@@ -48,7 +49,10 @@ impl PartialEq for Environment {
 impl SkyPicture {
     /// A picture of linear RGB, row by row.
     pub(crate) fn new(level: Level) -> SkyPicture {
-        SkyPicture { sun: sun::find(&level), level }
+        SkyPicture {
+            sun: sun::find(&level),
+            level,
+        }
     }
 
     /// Width and height in texels.
@@ -65,12 +69,18 @@ impl SkyPicture {
 impl Environment {
     /// A picture that is of no file.
     pub(crate) fn of(picture: SkyPicture) -> Environment {
-        Environment { file: None, picture: Arc::new(picture), rotation: 0.0 }
+        Environment {
+            file: None,
+            picture: Arc::new(picture),
+            rotation: 0.0,
+        }
     }
 
     /// The file's name, for people.
     pub fn name(&self) -> String {
-        self.file.as_ref().map_or("the scene's own".into(), |path| path.display().to_string())
+        self.file
+            .as_ref()
+            .map_or("the scene's own".into(), |path| path.display().to_string())
     }
 
     /// The picture's sun as a light, where radiance is the picture's times `factor`.
@@ -94,7 +104,8 @@ impl Scene {
     /// A picture that cannot be read.
     pub fn under(mut self, file: &Path) -> Result<Scene, SceneError> {
         if !file.as_os_str().is_empty() {
-            let read = file::read(file, &mut self.warnings).map_err(|message| SceneError::Environment { message })?;
+            let read = file::read(file, &mut self.warnings)
+                .map_err(|message| SceneError::Environment { message })?;
             (self.environment, self.sky) = (Some(read), Vec3::ONE);
         }
         Ok(self)
@@ -102,7 +113,10 @@ impl Scene {
 
     /// All that methods with lights are lit by: the scene's lights, then the sun of its sky.
     pub fn all_lights(&self) -> Vec<Light> {
-        let sun = self.environment.as_ref().and_then(|e| e.sun(self.sky, e.rotation));
+        let sun = self
+            .environment
+            .as_ref()
+            .and_then(|e| e.sun(self.sky, e.rotation));
         self.lights.iter().cloned().chain(sun).collect()
     }
 }
@@ -110,7 +124,11 @@ impl Scene {
 /// The direction of a place in the picture, both 0 to 1.
 fn direction(u: f32, v: f32) -> Vec3 {
     let (azimuth, polar) = ((u - 0.5) * TAU, v * PI);
-    Vec3::new(azimuth.sin() * polar.sin(), polar.cos(), -azimuth.cos() * polar.sin())
+    Vec3::new(
+        azimuth.sin() * polar.sin(),
+        polar.cos(),
+        -azimuth.cos() * polar.sin(),
+    )
 }
 
 /// What is wrong with the numbers of an environment.

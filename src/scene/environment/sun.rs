@@ -40,17 +40,30 @@ impl Sun {
 /// The sun of a picture, if it has one.
 pub(super) fn find(level: &Level) -> Option<Sun> {
     let width = level.width as usize;
-    let sizes: Vec<f64> = (0..level.height).map(|row| level.solid_angle(row)).collect();
+    let sizes: Vec<f64> = (0..level.height)
+        .map(|row| level.solid_angle(row))
+        .collect();
     let bright: Vec<f64> = level.texels.iter().map(|t| luminance(*t)).collect();
-    let all: f64 = bright.iter().enumerate().map(|(i, l)| l * sizes[i / width]).sum();
+    let all: f64 = bright
+        .iter()
+        .enumerate()
+        .map(|(i, l)| l * sizes[i / width])
+        .sum();
     let limit = TIMES_MEAN * all / (4.0 * std::f64::consts::PI);
-    let (brightest, most) = bright.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+    let (brightest, most) = bright
+        .iter()
+        .enumerate()
+        .max_by(|a, b| a.1.total_cmp(b.1))?;
     if *most <= limit {
         return None;
     }
     let to = |i: usize| {
         let place = |at: usize, of: u32| (at as f32 + 0.5) / of as f32;
-        direction(place(i % width, level.width), place(i / width, level.height)).as_dvec3()
+        direction(
+            place(i % width, level.width),
+            place(i / width, level.height),
+        )
+        .as_dvec3()
     };
     let axis = to(brightest);
     let cosine = |degrees: f64| degrees.to_radians().cos();
@@ -66,11 +79,16 @@ pub(super) fn find(level: &Level) -> Option<Sun> {
             size_around += size;
         }
     }
-    let surroundings = if size_around > 0.0 { around / size_around } else { DVec3::ZERO };
+    let surroundings = if size_around > 0.0 {
+        around / size_around
+    } else {
+        DVec3::ZERO
+    };
     let (mut irradiance, mut middle) = (DVec3::ZERO, DVec3::ZERO);
     for i in texels.iter().map(|i| *i as usize) {
-        let above =
-            (DVec3::from_array(level.texels[i].map(f64::from)) - surroundings).max(DVec3::ZERO) * sizes[i / width];
+        let above = (DVec3::from_array(level.texels[i].map(f64::from)) - surroundings)
+            .max(DVec3::ZERO)
+            * sizes[i / width];
         irradiance += above;
         middle += luminance(above.as_vec3().to_array()) * to(i);
     }
@@ -96,11 +114,21 @@ mod tests {
             let place = |at: u32, of: u32| (at as f32 + 0.5) / of as f32;
             [radiance(direction(place(i % width, width), place(i / width, height))); 3]
         };
-        Level { width, height, texels: (0..width * height).map(texel).collect() }
+        Level {
+            width,
+            height,
+            texels: (0..width * height).map(texel).collect(),
+        }
     }
 
     fn disc(to: Vec3, degrees: f32, radiance: f32) -> impl Fn(Vec3) -> f32 {
-        move |d| if d.dot(to) > degrees.to_radians().cos() { radiance } else { 1.0 }
+        move |d| {
+            if d.dot(to) > degrees.to_radians().cos() {
+                radiance
+            } else {
+                1.0
+            }
+        }
     }
 
     #[test]
@@ -109,12 +137,33 @@ mod tests {
         let level = picture(disc(to, 1.0, 20_000.0));
         let sun = find(&level).unwrap();
         let expected = 19_999.0 * std::f32::consts::TAU * (1.0 - 1f32.to_radians().cos());
-        assert!(sun.direction.dot(to) > 0.25f32.to_radians().cos(), "{}", sun.direction);
-        assert!((sun.irradiance.x / expected - 1.0).abs() < 0.1, "{} {expected}", sun.irradiance);
-        assert!((sun.surroundings.x - 1.0).abs() < 1e-4, "{}", sun.surroundings);
-        assert!(sun.removed(&level).texels.iter().all(|t| (t[0] - 1.0).abs() < 1e-4));
+        assert!(
+            sun.direction.dot(to) > 0.25f32.to_radians().cos(),
+            "{}",
+            sun.direction
+        );
+        assert!(
+            (sun.irradiance.x / expected - 1.0).abs() < 0.1,
+            "{} {expected}",
+            sun.irradiance
+        );
+        assert!(
+            (sun.surroundings.x - 1.0).abs() < 1e-4,
+            "{}",
+            sun.surroundings
+        );
+        assert!(
+            sun.removed(&level)
+                .texels
+                .iter()
+                .all(|t| (t[0] - 1.0).abs() < 1e-4)
+        );
         // Too weak, too little light, and too large.
-        for level in [picture(disc(to, 1.0, 30.0)), picture(disc(to, 0.5, 100.0)), picture(disc(to, 20.0, 1e5))] {
+        for level in [
+            picture(disc(to, 1.0, 30.0)),
+            picture(disc(to, 0.5, 100.0)),
+            picture(disc(to, 20.0, 1e5)),
+        ] {
             assert!(find(&level).is_none());
         }
         assert!(find(&picture(|_| 0.0)).is_none());

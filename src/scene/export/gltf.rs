@@ -35,7 +35,12 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
     // A mesh without triangles has no legal form and nothing to show.
     let mut written = vec![None; scene.meshes.len()];
     let mut meshes = Vec::new();
-    for (i, mesh) in scene.meshes.iter().enumerate().filter(|(_, mesh)| mesh.triangle_count() > 0) {
+    for (i, mesh) in scene
+        .meshes
+        .iter()
+        .enumerate()
+        .filter(|(_, mesh)| mesh.triangle_count() > 0)
+    {
         written[i] = Some(meshes.len());
         meshes.push(writer.mesh(mesh));
     }
@@ -46,7 +51,12 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
         };
         let matrix = instance.transform.to_cols_array();
         let node = json!({ "name": instance.name, "mesh": mesh, "matrix": matrix });
-        writer.below(instance.mover.and_then(|m| movers.get(m as usize).copied().flatten()), node);
+        writer.below(
+            instance
+                .mover
+                .and_then(|m| movers.get(m as usize).copied().flatten()),
+            node,
+        );
     }
     for (i, light) in scene.lights.iter().enumerate() {
         writer.below(
@@ -92,11 +102,20 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
 }
 
 fn save(mut root: Value, bytes: Vec<u8>, path: &Path, binary: bool) -> Result<(), SceneError> {
-    let length = u32::try_from(bytes.len())
-        .map_err(|_| FileError::write(path, "a glTF buffer cannot be larger than 4 GiB; export as .obj"))?;
+    let length = u32::try_from(bytes.len()).map_err(|_| {
+        FileError::write(
+            path,
+            "a glTF buffer cannot be larger than 4 GiB; export as .obj",
+        )
+    })?;
     if !binary {
         let side = path.with_extension("bin");
-        let name = side.file_name().unwrap_or_default().to_string_lossy().replace('%', "%25").replace(' ', "%20");
+        let name = side
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .replace('%', "%25")
+            .replace(' ', "%20");
         if length > 0 {
             root["buffers"] = json!([{ "byteLength": length, "uri": name }]);
             write_file(&side, &bytes)?;
@@ -127,7 +146,8 @@ fn save(mut root: Value, bytes: Vec<u8>, path: &Path, binary: bool) -> Result<()
 impl Writer {
     /// Adds bytes on a boundary of 4 and returns the index of their view.
     fn view(&mut self, bytes: &[u8], more: Value) -> usize {
-        let mut view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
+        let mut view =
+            json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
         if let (Some(view), Some(more)) = (view.as_object_mut(), more.as_object()) {
             view.extend(more.clone());
         }
@@ -145,15 +165,25 @@ impl Writer {
     fn mesh(&mut self, mesh: &Mesh) -> Value {
         // The second set and colours are last in a vertex, and few meshes have them.
         let more = mesh.vertices.iter().any(|v| v.uv_second != [0.0; 2]) || mesh.has_colors();
-        let stride = if more { size_of::<Vertex>() } else { std::mem::offset_of!(Vertex, uv_second) };
+        let stride = if more {
+            size_of::<Vertex>()
+        } else {
+            std::mem::offset_of!(Vertex, uv_second)
+        };
         let mut bytes = Vec::with_capacity(mesh.vertices.len() * stride);
-        mesh.vertices.iter().for_each(|v| bytes.extend_from_slice(&bytemuck::bytes_of(v)[..stride]));
+        mesh.vertices
+            .iter()
+            .for_each(|v| bytes.extend_from_slice(&bytemuck::bytes_of(v)[..stride]));
         let vertices = self.view(&bytes, json!({ "byteStride": stride, "target": 34962 }));
         let positions = mesh.vertices.iter().map(|v| Vec3::from_array(v.position));
-        let (low, high) = positions.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+        let (low, high) = positions.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| {
+            (l.min(p), h.max(p))
+        });
         let mut attribute = |offset: usize, kind: &str| {
-            self.accessors.push(json!({ "bufferView": vertices, "byteOffset": offset, "componentType": FLOAT,
-                "type": kind, "count": mesh.vertices.len() }));
+            self.accessors.push(
+                json!({ "bufferView": vertices, "byteOffset": offset, "componentType": FLOAT,
+                "type": kind, "count": mesh.vertices.len() }),
+            );
             self.accessors.len() - 1
         };
         let mut attributes = json!({
@@ -163,17 +193,23 @@ impl Writer {
             "TEXCOORD_0": attribute(std::mem::offset_of!(Vertex, uv), "VEC2"),
         });
         if more {
-            attributes["TEXCOORD_1"] = json!(attribute(std::mem::offset_of!(Vertex, uv_second), "VEC2"));
+            attributes["TEXCOORD_1"] =
+                json!(attribute(std::mem::offset_of!(Vertex, uv_second), "VEC2"));
             attributes["COLOR_0"] = json!(attribute(std::mem::offset_of!(Vertex, color), "VEC4"));
         }
         if let Some(position) = attributes["POSITION"].as_u64() {
             self.accessors[position as usize]["min"] = json!(low.to_array());
             self.accessors[position as usize]["max"] = json!(high.to_array());
         }
-        let indices = self.view(bytemuck::cast_slice(&mesh.indices), json!({ "target": 34963 }));
+        let indices = self.view(
+            bytemuck::cast_slice(&mesh.indices),
+            json!({ "target": 34963 }),
+        );
         let primitives = mesh.submeshes.iter().map(|submesh| {
-            let accessor = self.accessor(json!({ "bufferView": indices, "byteOffset": submesh.first_index * 4,
-                "componentType": UNSIGNED_INT, "type": "SCALAR", "count": submesh.index_count }));
+            let accessor = self.accessor(
+                json!({ "bufferView": indices, "byteOffset": submesh.first_index * 4,
+                "componentType": UNSIGNED_INT, "type": "SCALAR", "count": submesh.index_count }),
+            );
             json!({ "attributes": attributes, "indices": accessor, "material": submesh.material })
         });
         let primitives: Vec<Value> = primitives.collect();
@@ -202,7 +238,9 @@ impl Writer {
 
     pub(super) fn floats(&mut self, values: &[u8], kind: &str, count: usize) -> usize {
         let view = self.view(values, json!({}));
-        self.accessor(json!({ "bufferView": view, "componentType": FLOAT, "type": kind, "count": count }))
+        self.accessor(
+            json!({ "bufferView": view, "componentType": FLOAT, "type": kind, "count": count }),
+        )
     }
 }
 
@@ -250,7 +288,8 @@ fn material(material: &Material, colored: bool, textures: &mut Textures) -> Valu
         value["alphaCutoff"] = json!(material.alpha_cutoff);
     }
     if let Some(index) = material.base_color_texture {
-        value["pbrMetallicRoughness"]["baseColorTexture"] = textures.reference(index, lookups.base_color);
+        value["pbrMetallicRoughness"]["baseColorTexture"] =
+            textures.reference(index, lookups.base_color);
     }
     if let Some(index) = material.metallic_roughness_texture {
         value["pbrMetallicRoughness"]["metallicRoughnessTexture"] =
@@ -273,7 +312,9 @@ fn material(material: &Material, colored: bool, textures: &mut Textures) -> Valu
 fn unlit(material: &Material, mut value: Value) -> Value {
     let pbr = &mut value["pbrMetallicRoughness"];
     pbr["baseColorFactor"] = json!(material.emission.extend(material.base_color.w).to_array());
-    let texture = value.as_object_mut().and_then(|fields| fields.remove("emissiveTexture"));
+    let texture = value
+        .as_object_mut()
+        .and_then(|fields| fields.remove("emissiveTexture"));
     if let Some(texture) = texture {
         value["pbrMetallicRoughness"]["baseColorTexture"] = texture;
     }
@@ -301,7 +342,10 @@ fn light(light: &Light) -> Value {
 
 fn camera_node(name: &str, index: usize, camera: &Camera) -> Value {
     let back = (camera.eye - camera.target).normalize_or(Vec3::Z);
-    let right = camera.up.cross(back).normalize_or(back.any_orthonormal_vector());
+    let right = camera
+        .up
+        .cross(back)
+        .normalize_or(back.any_orthonormal_vector());
     let turn = Quat::from_mat3(&Mat3::from_cols(right, back.cross(right), back));
     json!({ "name": name, "camera": index, "translation": camera.eye.to_array(), "rotation": turn.to_array() })
 }

@@ -15,30 +15,57 @@ use crate::scene::{SceneError, Texture, TextureFormat};
 
 /// Level 0 as an RGBA PNG.
 pub(super) fn rgba_png(texture: &Texture, target: &Path) -> Result<Vec<u8>, SceneError> {
-    encode(&texels(texture, target)?, texture, ExtendedColorType::Rgba8, target)
+    encode(
+        &texels(texture, target)?,
+        texture,
+        ExtendedColorType::Rgba8,
+        target,
+    )
 }
 
 /// One channel of level 0 as a grey PNG.
-pub(super) fn grey_png(texture: &Texture, channel: usize, target: &Path) -> Result<Vec<u8>, SceneError> {
-    let grey: Vec<u8> = texels(texture, target)?.iter().skip(channel).step_by(4).copied().collect();
+pub(super) fn grey_png(
+    texture: &Texture,
+    channel: usize,
+    target: &Path,
+) -> Result<Vec<u8>, SceneError> {
+    let grey: Vec<u8> = texels(texture, target)?
+        .iter()
+        .skip(channel)
+        .step_by(4)
+        .copied()
+        .collect();
     encode(&grey, texture, ExtendedColorType::L8, target)
 }
 
 /// Radiance of all directions where it is the picture's times `factor`.
-pub(super) fn sky_exr(sky: &Environment, factor: Vec3, target: &Path) -> Result<Vec<u8>, SceneError> {
+pub(super) fn sky_exr(
+    sky: &Environment,
+    factor: Vec3,
+    target: &Path,
+) -> Result<Vec<u8>, SceneError> {
     let (width, height) = sky.picture.size();
     let radiance = |texel: &[f32; 3]| (Vec3::from_array(*texel) * factor).to_array();
     let texels: Vec<[f32; 3]> = sky.picture.texels().iter().map(radiance).collect();
     let mut exr = Cursor::new(Vec::new());
     OpenExrEncoder::new(&mut exr)
-        .write_image(bytemuck::cast_slice(&texels), width, height, ExtendedColorType::Rgb32F)
+        .write_image(
+            bytemuck::cast_slice(&texels),
+            width,
+            height,
+            ExtendedColorType::Rgb32F,
+        )
         .map_err(|error| FileError::write(target, error))?;
     Ok(exr.into_inner())
 }
 
 fn texels(texture: &Texture, target: &Path) -> Result<Vec<u8>, SceneError> {
-    let fail =
-        |problem: String| FileError::write(target, format!("texture {} cannot be decoded: {problem}", texture.name));
+    let fail = |problem: String| {
+        FileError::write(
+            target,
+            format!("texture {} cannot be decoded: {problem}", texture.name),
+        )
+    };
     let mut rgba = first_level_rgba(texture).map_err(fail)?.into_owned();
     if texture.format == TextureFormat::Bc5Unorm {
         // BC5 stores the x and y of normals; z follows from their unit length.
@@ -51,7 +78,12 @@ fn texels(texture: &Texture, target: &Path) -> Result<Vec<u8>, SceneError> {
     Ok(rgba)
 }
 
-fn encode(bytes: &[u8], texture: &Texture, color: ExtendedColorType, target: &Path) -> Result<Vec<u8>, SceneError> {
+fn encode(
+    bytes: &[u8],
+    texture: &Texture,
+    color: ExtendedColorType,
+    target: &Path,
+) -> Result<Vec<u8>, SceneError> {
     let mut png = Vec::new();
     PngEncoder::new_with_quality(&mut png, CompressionType::Fast, FilterType::Adaptive)
         .write_image(bytes, texture.width, texture.height, color)

@@ -42,22 +42,40 @@ impl Scene {
     fn left_out_of_obj(&self) -> Warnings {
         let mut warnings = Warnings::default();
         for mesh in self.meshes.iter().filter(|mesh| mesh.has_colors()) {
-            warnings.add("colours of vertices are left out of .obj files. Export as .glb to keep them", &mesh.name);
+            warnings.add(
+                "colours of vertices are left out of .obj files. Export as .glb to keep them",
+                &mesh.name,
+            );
         }
-        for material in self.materials.iter().filter(|m| m.lookups != Lookups::default()) {
+        for material in self
+            .materials
+            .iter()
+            .filter(|m| m.lookups != Lookups::default())
+        {
             let what = "wrap modes, filters and second sets of texture coordinates are left out of .obj files. Export as \
                         .glb to keep them";
             warnings.add(what, &material.name);
         }
-        self.animated()
-            .for_each(|i| warnings.add("motion is left out of .obj files, which hold the pose at 0 s", &i.name));
+        self.animated().for_each(|i| {
+            warnings.add(
+                "motion is left out of .obj files, which hold the pose at 0 s",
+                &i.name,
+            )
+        });
         warnings
     }
 
     fn left_out_of_gltf(&self) -> Warnings {
         let mut warnings = Warnings::default();
-        for mesh in self.deformers.iter().filter_map(|d| self.meshes.get(d.mesh as usize)) {
-            warnings.add("skins and morph targets are written in their pose at 0 s", &mesh.name);
+        for mesh in self
+            .deformers
+            .iter()
+            .filter_map(|d| self.meshes.get(d.mesh as usize))
+        {
+            warnings.add(
+                "skins and morph targets are written in their pose at 0 s",
+                &mesh.name,
+            );
         }
         warnings
     }
@@ -72,8 +90,16 @@ fn unique_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken = std::collections::HashSet::new();
     let mut unique = Vec::new();
     for name in names {
-        let name: String = name.trim().chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-        let base = if name.is_empty() { "unnamed".to_owned() } else { name };
+        let name: String = name
+            .trim()
+            .chars()
+            .map(|c| if c.is_control() { ' ' } else { c })
+            .collect();
+        let base = if name.is_empty() {
+            "unnamed".to_owned()
+        } else {
+            name
+        };
         let mut candidate = base.clone();
         let mut number = 2;
         while !taken.insert(candidate.clone()) {

@@ -33,7 +33,9 @@ pub(super) fn movers(writer: &mut Writer, scene: &Scene) -> Vec<Option<usize>> {
     let mut nodes: Vec<Option<usize>> = vec![None; scene.movers.len()];
     for (number, (mover, name)) in scene.movers.iter().zip(names).enumerate() {
         let Some(name) = name else { continue };
-        let mut parent = mover.parent.and_then(|p| nodes.get(p as usize).copied().flatten());
+        let mut parent = mover
+            .parent
+            .and_then(|p| nodes.get(p as usize).copied().flatten());
         if mover.placed != Mat4::IDENTITY {
             parent = Some(writer.below(parent, json!({ "matrix": mover.placed.to_cols_array() })));
         }
@@ -43,20 +45,43 @@ pub(super) fn movers(writer: &mut Writer, scene: &Scene) -> Vec<Option<usize>> {
 }
 
 fn moving(writer: &mut Writer, parent: Option<usize>, name: &str, mover: &Mover) -> usize {
-    let Track { translation, rotation, scale, period, .. } = &*mover.track;
+    let Track {
+        translation,
+        rotation,
+        scale,
+        period,
+        ..
+    } = &*mover.track;
     let (size, turn, place) = mover.track.at(0.0).to_scale_rotation_translation();
     let node = writer.below(
         parent,
         json!({ "name": format!("{name} motion"), "translation": place.to_array(), "rotation": turn.to_array(),
             "scale": size.to_array() }),
     );
-    let clip = writer.clips.iter().position(|clip| clip.period == *period).unwrap_or_else(|| {
-        writer.clips.push(Clip { period: *period, ..Clip::default() });
-        writer.clips.len() - 1
+    let clip = writer
+        .clips
+        .iter()
+        .position(|clip| clip.period == *period)
+        .unwrap_or_else(|| {
+            writer.clips.push(Clip {
+                period: *period,
+                ..Clip::default()
+            });
+            writer.clips.len() - 1
+        });
+    channel(
+        writer,
+        clip,
+        (node, "translation"),
+        translation.as_ref(),
+        |v| v.to_array().to_vec(),
+    );
+    channel(writer, clip, (node, "rotation"), rotation.as_ref(), |q| {
+        q.to_array().to_vec()
     });
-    channel(writer, clip, (node, "translation"), translation.as_ref(), |v| v.to_array().to_vec());
-    channel(writer, clip, (node, "rotation"), rotation.as_ref(), |q| q.to_array().to_vec());
-    channel(writer, clip, (node, "scale"), scale.as_ref(), |v| v.to_array().to_vec());
+    channel(writer, clip, (node, "scale"), scale.as_ref(), |v| {
+        v.to_array().to_vec()
+    });
     node
 }
 
@@ -80,6 +105,8 @@ fn channel<T: crate::scene::Value>(
         Interpolation::Cubic => "CUBICSPLINE",
     };
     let clip = &mut writer.clips[clip];
-    clip.channels.push(json!({ "sampler": clip.samplers.len(), "target": { "node": node, "path": path } }));
-    clip.samplers.push(json!({ "input": input, "output": output, "interpolation": interpolation }));
+    clip.channels
+        .push(json!({ "sampler": clip.samplers.len(), "target": { "node": node, "path": path } }));
+    clip.samplers
+        .push(json!({ "input": input, "output": output, "interpolation": interpolation }));
 }

@@ -10,8 +10,17 @@ use crate::scene::{Material, Mesh, Scene, SceneError};
 
 /// Writes `path`, the .mtl beside it and PNG files into a folder `<stem>_textures`.
 pub(super) fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
-    let materials = unique_names(scene.materials.iter().map(|material| material.name.as_str()));
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let materials = unique_names(
+        scene
+            .materials
+            .iter()
+            .map(|material| material.name.as_str()),
+    );
+    let stem = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
     let mut mtl = String::new();
     for (material, name) in scene.materials.iter().zip(&materials) {
         write_material(&mut mtl, scene, material, name, path, &stem)?;
@@ -19,12 +28,24 @@ pub(super) fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
     write_file(&path.with_extension("mtl"), mtl.as_bytes())?;
 
     let mut obj = format!("mtllib {stem}.mtl\n");
-    let names = unique_names(scene.instances.iter().map(|instance| instance.name.as_str()));
+    let names = unique_names(
+        scene
+            .instances
+            .iter()
+            .map(|instance| instance.name.as_str()),
+    );
     let mut first_vertex = 1;
     for (i, (instance, name)) in scene.instances.iter().zip(&names).enumerate() {
         let mesh = &scene.meshes[instance.mesh as usize];
         // Writing into a string cannot fail.
-        let _ = write_instance(&mut obj, &scene.instance_transform(i, 0.0), mesh, name, &materials, first_vertex);
+        let _ = write_instance(
+            &mut obj,
+            &scene.instance_transform(i, 0.0),
+            mesh,
+            name,
+            &materials,
+            first_vertex,
+        );
         first_vertex += mesh.vertices.len();
     }
     write_file(path, obj.as_bytes())
@@ -53,10 +74,15 @@ fn write_instance(
         writeln!(out, "vn {} {} {}", n.x, n.y, n.z)?;
     }
     // A mirroring transform turns faces inside out; the file has no transform, so its corners turn instead.
-    let order = if axes.determinant() < 0.0 { [0, 2, 1] } else { [0, 1, 2] };
+    let order = if axes.determinant() < 0.0 {
+        [0, 2, 1]
+    } else {
+        [0, 1, 2]
+    };
     for submesh in &mesh.submeshes {
         writeln!(out, "usemtl {}", materials[submesh.material as usize])?;
-        let range = submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
+        let range =
+            submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
         for triangle in mesh.indices[range].as_chunks::<3>().0 {
             let [a, b, c] = order.map(|k| triangle[k] as usize + first_vertex);
             writeln!(out, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}")?;
@@ -85,7 +111,9 @@ fn write_material(
     let (index, specular, color) = (material.ior, material.specular, material.specular_color);
     if (index, specular, color) != (plain.ior, plain.specular, plain.specular_color) {
         let [r, g, b] = color.to_array();
-        maps.push(format!("ior {index}\nspecular {specular}\nspecular_color {r} {g} {b}"));
+        maps.push(format!(
+            "ior {index}\nspecular {specular}\nspecular_color {r} {g} {b}"
+        ));
     }
     if let Some((i, image)) = texture(material.base_color_texture) {
         let entry = save(format!("{i}_color.png"), images::rgba_png(image, path)?)?;
@@ -98,15 +126,26 @@ fn write_material(
         }
     }
     if let Some((i, image)) = texture(material.metallic_roughness_texture) {
-        let roughness = save(format!("{i}_roughness.png"), images::grey_png(image, 1, path)?)?;
-        let metallic = save(format!("{i}_metallic.png"), images::grey_png(image, 2, path)?)?;
+        let roughness = save(
+            format!("{i}_roughness.png"),
+            images::grey_png(image, 1, path)?,
+        )?;
+        let metallic = save(
+            format!("{i}_metallic.png"),
+            images::grey_png(image, 2, path)?,
+        )?;
         maps.push(format!("map_Pr {roughness}\nmap_Pm {metallic}"));
     }
     if let Some((i, image)) = texture(material.normal_texture) {
         let entry = save(format!("{i}_normal.png"), images::rgba_png(image, path)?)?;
-        maps.push(format!("norm {entry}\nnormal_scale {}", material.normal_scale));
+        maps.push(format!(
+            "norm {entry}\nnormal_scale {}",
+            material.normal_scale
+        ));
     }
-    if let Some((i, image)) = texture(material.emission_texture).filter(|_| material.emission != Vec3::ZERO) {
+    if let Some((i, image)) =
+        texture(material.emission_texture).filter(|_| material.emission != Vec3::ZERO)
+    {
         let entry = save(format!("{i}_emission.png"), images::rgba_png(image, path)?)?;
         maps.push(format!("map_Ke {entry}"));
     }

@@ -15,18 +15,34 @@ impl Textures {
     /// A material's reference to an image.
     pub fn reference(&mut self, image: u32, lookup: Lookup) -> Value {
         // The reference names the set of coordinates, not the texture.
-        let (index, _) = self.pairs.insert_full((image, Lookup { second_set: false, ..lookup }));
-        if lookup.second_set { json!({ "index": index, "texCoord": 1 }) } else { json!({ "index": index }) }
+        let (index, _) = self.pairs.insert_full((
+            image,
+            Lookup {
+                second_set: false,
+                ..lookup
+            },
+        ));
+        if lookup.second_set {
+            json!({ "index": index, "texCoord": 1 })
+        } else {
+            json!({ "index": index })
+        }
     }
 
     /// The file's `textures`; each has the sampler of its own number.
     pub fn list(&self) -> Vec<Value> {
-        (0..).zip(&self.pairs).map(|(i, (image, _)): (usize, _)| json!({ "source": image, "sampler": i })).collect()
+        (0..)
+            .zip(&self.pairs)
+            .map(|(i, (image, _)): (usize, _)| json!({ "source": image, "sampler": i }))
+            .collect()
     }
 
     /// The file's `samplers`.
     pub fn samplers(&self) -> Vec<Value> {
-        self.pairs.iter().map(|(_, lookup)| sampler(lookup)).collect()
+        self.pairs
+            .iter()
+            .map(|(_, lookup)| sampler(lookup))
+            .collect()
     }
 }
 

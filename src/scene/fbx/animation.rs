@@ -32,36 +32,68 @@ impl Motion {
         clip: Option<&str>,
         warnings: &mut Warnings,
     ) -> Result<Motion, String> {
-        let names: Vec<String> = file.anim_stacks.into_iter().map(|stack| shown(&stack.element.name)).collect();
-        let chosen = clip.map(|clip| clips::number(clip, &names)).transpose()?.unwrap_or(0);
-        let Some(first) = file.anim_stacks.into_iter().nth(chosen) else { return Ok(Motion::default()) };
+        let names: Vec<String> = file
+            .anim_stacks
+            .into_iter()
+            .map(|stack| shown(&stack.element.name))
+            .collect();
+        let chosen = clip
+            .map(|clip| clips::number(clip, &names))
+            .transpose()?
+            .unwrap_or(0);
+        let Some(first) = file.anim_stacks.into_iter().nth(chosen) else {
+            return Ok(Motion::default());
+        };
         names
             .iter()
             .enumerate()
             .filter(|(i, _)| *i != chosen)
             .for_each(|(_, name)| warnings.add(clips::LEFT_OUT, name));
         let (temp_allocator, result_allocator) = (memory(bytes), memory(bytes));
-        let options = BakeOpts { temp_allocator, result_allocator, trim_start_time: true, ..BakeOpts::default() };
-        let baked = bake_anim(file, &first.anim, options)
-            .map_err(|error| format!("its animation cannot be read ({})", error.description.to_lowercase()))?;
-        let moving =
-            baked.nodes.iter().filter(|n| !(n.constant_translation && n.constant_rotation && n.constant_scale));
+        let options = BakeOpts {
+            temp_allocator,
+            result_allocator,
+            trim_start_time: true,
+            ..BakeOpts::default()
+        };
+        let baked = bake_anim(file, &first.anim, options).map_err(|error| {
+            format!(
+                "its animation cannot be read ({})",
+                error.description.to_lowercase()
+            )
+        })?;
+        let moving = baked
+            .nodes
+            .iter()
+            .filter(|n| !(n.constant_translation && n.constant_rotation && n.constant_scale));
         let moving: Vec<&BakedNode> = moving.collect();
         let weights = weights(&baked)?;
         // All start over together.
         let last = moving.iter().map(|n| last_key(n)).fold(0.0, f64::max) as f32;
-        let last = weights.values().filter_map(|curve| curve.times().last().copied()).fold(last, f32::max);
+        let last = weights
+            .values()
+            .filter_map(|curve| curve.times().last().copied())
+            .fold(last, f32::max);
         let period = Some(last).filter(|last| *last > 0.0 && last.is_finite());
         let mut tracks = HashMap::new();
         for baked in moving {
-            let Some(node) = file.nodes.as_ref().get(baked.typed_id as usize) else { continue };
+            let Some(node) = file.nodes.as_ref().get(baked.typed_id as usize) else {
+                continue;
+            };
             let track = track(node, baked, period);
             let track = track.ok_or_else(|| {
-                format!("node '{}' has a motion that is not finite. Export it again", shown(&node.element.name))
+                format!(
+                    "node '{}' has a motion that is not finite. Export it again",
+                    shown(&node.element.name)
+                )
             })?;
             tracks.insert(baked.typed_id, Arc::new(track));
         }
-        Ok(Motion { tracks, weights, period })
+        Ok(Motion {
+            tracks,
+            weights,
+            period,
+        })
     }
 
     /// How much of a channel's shapes there is, if it changes.
@@ -79,20 +111,35 @@ impl Motion {
 fn weights(baked: &ufbx::BakedAnim) -> Result<HashMap<u32, Curve<f32>>, String> {
     let mut found = HashMap::new();
     for element in &baked.elements {
-        let percent = element.props.iter().find(|p| p.name.as_ref() == "DeformPercent" && !p.constant_value);
-        let Some(percent) = percent.filter(|p| !p.keys.is_empty()) else { continue };
+        let percent = element
+            .props
+            .iter()
+            .find(|p| p.name.as_ref() == "DeformPercent" && !p.constant_value);
+        let Some(percent) = percent.filter(|p| !p.keys.is_empty()) else {
+            continue;
+        };
         let times = percent.keys.iter().map(|k| k.time as f32).collect();
-        let values = percent.keys.iter().map(|k| (k.value.x / 100.0) as f32).collect();
+        let values = percent
+            .keys
+            .iter()
+            .map(|k| (k.value.x / 100.0) as f32)
+            .collect();
         let curve = Curve::new(times, values, Interpolation::Linear);
-        let curve = curve.ok_or("a blend shape has weights that are not finite. Export it again")?;
+        let curve =
+            curve.ok_or("a blend shape has weights that are not finite. Export it again")?;
         found.insert(element.element_id, curve);
     }
     Ok(found)
 }
 
 fn last_key(node: &BakedNode) -> f64 {
-    let vectors = [&node.translation_keys, &node.scale_keys].into_iter().filter_map(|keys| keys.last().map(|k| k.time));
-    vectors.chain(node.rotation_keys.last().map(|k| k.time)).filter(|t| t.is_finite()).fold(0.0, f64::max)
+    let vectors = [&node.translation_keys, &node.scale_keys]
+        .into_iter()
+        .filter_map(|keys| keys.last().map(|k| k.time));
+    vectors
+        .chain(node.rotation_keys.last().map(|k| k.time))
+        .filter(|t| t.is_finite())
+        .fold(0.0, f64::max)
 }
 
 /// None where a number is not finite.
@@ -108,8 +155,18 @@ fn track(node: &Node, baked: &BakedNode, period: Option<f32>) -> Option<Track> {
         let values: Vec<Vec3> = keys.iter().map(|k| vector(k.value).as_vec3()).collect();
         Curve::new(times, values, Interpolation::Linear)
     };
-    let curve = |keys: &[BakedVec3]| if keys.is_empty() { Some(None) } else { vectors(keys).map(Some) };
-    let rotations: Vec<Quat> = baked.rotation_keys.iter().map(|k| rotation(k.value)).collect();
+    let curve = |keys: &[BakedVec3]| {
+        if keys.is_empty() {
+            Some(None)
+        } else {
+            vectors(keys).map(Some)
+        }
+    };
+    let rotations: Vec<Quat> = baked
+        .rotation_keys
+        .iter()
+        .map(|k| rotation(k.value))
+        .collect();
     let times: Vec<f32> = baked.rotation_keys.iter().map(|k| k.time as f32).collect();
     let turns = match times.is_empty() {
         true => None,
@@ -128,5 +185,9 @@ fn track(node: &Node, baked: &BakedNode, period: Option<f32>) -> Option<Track> {
 fn rotation(q: ufbx::Quat) -> Quat {
     let q = DQuat::from_xyzw(q.x, q.y, q.z, q.w);
     let sound = q.is_finite() && q.length_squared() > 0.0;
-    if sound { q.normalize().as_quat().normalize() } else { Quat::IDENTITY }
+    if sound {
+        q.normalize().as_quat().normalize()
+    } else {
+        Quat::IDENTITY
+    }
 }

@@ -1,8 +1,8 @@
 //! From a file's bytes to a document of ufbx, with bounds on memory and depth.
 
 use ufbx::{
-    AllocatorOpts, CoordinateAxes, ErrorType, FileFormat, InheritModeHandling, LoadOpts, ProgressCb, ProgressResult,
-    SceneRoot, load_memory,
+    AllocatorOpts, CoordinateAxes, ErrorType, FileFormat, InheritModeHandling, LoadOpts,
+    ProgressCb, ProgressResult, SceneRoot, load_memory,
 };
 
 use crate::scene::progress::Progress;
@@ -18,7 +18,10 @@ const MAX_DEPTH: u32 = 512;
 
 /// Limits memory by the length of a file in bytes.
 pub(super) fn memory(bytes: usize) -> AllocatorOpts {
-    AllocatorOpts { memory_limit: MEMORY.saturating_add(bytes.saturating_mul(PER_BYTE)), ..AllocatorOpts::default() }
+    AllocatorOpts {
+        memory_limit: MEMORY.saturating_add(bytes.saturating_mul(PER_BYTE)),
+        ..AllocatorOpts::default()
+    }
 }
 
 /// Reads a document. Lengths are in metres, y is up; the frame of the root node has the conversion.
@@ -32,7 +35,11 @@ pub(super) fn read(bytes: &[u8], progress: Progress) -> Result<SceneRoot, String
         result_allocator: memory(bytes.len()),
         progress_cb: ProgressCb::Ref(&ask),
         node_depth_limit: MAX_DEPTH,
-        file_format: if bytes.starts_with(MAGIC) { FileFormat::Fbx } else { FileFormat::Unknown },
+        file_format: if bytes.starts_with(MAGIC) {
+            FileFormat::Fbx
+        } else {
+            FileFormat::Unknown
+        },
         no_format_from_extension: true,
         evaluate_skinning: true,
         generate_missing_normals: true,
@@ -50,7 +57,11 @@ pub(super) fn read(bytes: &[u8], progress: Progress) -> Result<SceneRoot, String
         ErrorType::NodeDepthLimit => format!("its nodes are nested more than {MAX_DEPTH} deep"),
         _ => format!("it cannot be read ({}). Export it again", error.description.to_lowercase()),
     })?;
-    if file.metadata.file_format == FileFormat::Fbx { Ok(file) } else { Err(not_fbx()) }
+    if file.metadata.file_format == FileFormat::Fbx {
+        Ok(file)
+    } else {
+        Err(not_fbx())
+    }
 }
 
 fn not_fbx() -> String {

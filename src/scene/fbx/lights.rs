@@ -19,15 +19,38 @@ pub(super) fn read(
     let is_blender = matches!(exporter, Exporter::BlenderBinary | Exporter::BlenderAscii);
     // Blender omits numbers that are equal to its own template and may not write that template. Then ufbx takes numbers of
     // another template.
-    let is_own = |name: &str| !is_blender || from.element.props.props.iter().any(|prop| prop.name == name);
-    let tint = if is_own("Color") { vector(from.color) } else { DVec3::ONE };
-    let intensity = if is_own("Intensity") { from.intensity } else { 1.0 };
+    let is_own = |name: &str| {
+        !is_blender
+            || from
+                .element
+                .props
+                .props
+                .iter()
+                .any(|prop| prop.name == name)
+    };
+    let tint = if is_own("Color") {
+        vector(from.color)
+    } else {
+        DVec3::ONE
+    };
+    let intensity = if is_own("Intensity") {
+        from.intensity
+    } else {
+        1.0
+    };
     let is_quadratic = is_blender || from.decay == LightDecay::Quadratic;
     // Watts of a lamp in all directions; suns have W/m^2.
-    let whole = if is_blender && from.type_ != LightType::Directional { 4.0 * std::f64::consts::PI } else { 1.0 };
+    let whole = if is_blender && from.type_ != LightType::Directional {
+        4.0 * std::f64::consts::PI
+    } else {
+        1.0
+    };
     let strength = tint * (intensity / whole);
     if strength.min_element() < 0.0 {
-        warnings.add("negative colours and intensities of lights count as 0", name);
+        warnings.add(
+            "negative colours and intensities of lights count as 0",
+            name,
+        );
     }
     let strength = color(strength).ok_or("a colour or intensity that is too large")?;
     let kind = match from.type_ {
@@ -35,16 +58,25 @@ pub(super) fn read(
         LightType::Point => LightKind::Point,
         LightType::Spot => spot(from)?,
         LightType::Area => {
-            warnings.add("area lights have no extent: they are spots of 180 degrees, spheres are points", name);
+            warnings.add(
+                "area lights have no extent: they are spots of 180 degrees, spheres are points",
+                name,
+            );
             match from.area_shape {
                 LightAreaShape::Sphere => LightKind::Point,
-                LightAreaShape::Rectangle => LightKind::Spot { inner: 0.0, outer: std::f32::consts::FRAC_PI_2 },
+                LightAreaShape::Rectangle => LightKind::Spot {
+                    inner: 0.0,
+                    outer: std::f32::consts::FRAC_PI_2,
+                },
             }
         }
         LightType::Volume => return Err("a volume"),
     };
     if !is_quadratic && kind != LightKind::Directional {
-        warnings.add("lights that do not decay by the square of the distance do so here", name);
+        warnings.add(
+            "lights that do not decay by the square of the distance do so here",
+            name,
+        );
     }
     if !is_blender {
         let what = format!(
@@ -53,7 +85,9 @@ pub(super) fn read(
         );
         warnings.add(what, name);
     }
-    let direction = world.transform_vector3(vector(from.local_direction)).normalize_or(DVec3::NEG_Y);
+    let direction = world
+        .transform_vector3(vector(from.local_direction))
+        .normalize_or(DVec3::NEG_Y);
     Ok(Light {
         name: name.to_owned(),
         kind,
@@ -73,5 +107,12 @@ fn spot(from: &From) -> Result<LightKind, &'static str> {
         return Err("cone angles that are not between 0 and 180 degrees");
     }
     let outer = outer.min(largest);
-    Ok(LightKind::Spot { inner: if inner.is_finite() { inner.clamp(0.0, outer) } else { 0.0 }, outer })
+    Ok(LightKind::Spot {
+        inner: if inner.is_finite() {
+            inner.clamp(0.0, outer)
+        } else {
+            0.0
+        },
+        outer,
+    })
 }

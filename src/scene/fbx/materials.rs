@@ -33,8 +33,15 @@ pub(super) struct Read {
 }
 
 /// All materials in the order of the file.
-pub(super) fn read(file: &ufbx::Scene, pictures: &mut Pictures, warnings: &mut Warnings) -> Vec<Read> {
-    file.materials.into_iter().map(|material| convert(material, pictures, warnings)).collect()
+pub(super) fn read(
+    file: &ufbx::Scene,
+    pictures: &mut Pictures,
+    warnings: &mut Warnings,
+) -> Vec<Read> {
+    file.materials
+        .into_iter()
+        .map(|material| convert(material, pictures, warnings))
+        .collect()
 }
 
 fn convert(from: &From, pictures: &mut Pictures, warnings: &mut Warnings) -> Read {
@@ -45,20 +52,40 @@ fn convert(from: &From, pictures: &mut Pictures, warnings: &mut Warnings) -> Rea
     let mut references = References::default();
     let mut laid = |map: &MaterialMap, warnings: &mut Warnings| {
         let texture = map.texture.as_ref().filter(|_| map.texture_enabled)?;
-        let Laid { image, source, lookup, is_missing } = pictures.find(texture, warnings)?;
+        let Laid {
+            image,
+            source,
+            lookup,
+            is_missing,
+        } = pictures.find(texture, warnings)?;
         Some((references.add(source, lookup), image, is_missing))
     };
-    let alpha_map = if is_phong { &fbx.transparency_color } else { &pbr.opacity };
+    let alpha_map = if is_phong {
+        &fbx.transparency_color
+    } else {
+        &pbr.opacity
+    };
     let [color_map, alpha] = [&pbr.base_color, alpha_map].map(|map| laid(map, warnings));
     // A Phong exponent is no roughness.
-    let roughness = if is_phong { None } else { laid(&pbr.roughness, warnings) };
+    let roughness = if is_phong {
+        None
+    } else {
+        laid(&pbr.roughness, warnings)
+    };
     let [metallic, emission] = [&pbr.metalness, &pbr.emission_color].map(|map| laid(map, warnings));
     let normal = laid(&fbx.normal_map, warnings).map(|found| (found, false));
-    let normal = normal.or_else(|| laid(&pbr.normal_map, warnings).or(laid(&fbx.bump, warnings)).map(|f| (f, true)));
+    let normal = normal.or_else(|| {
+        laid(&pbr.normal_map, warnings)
+            .or(laid(&fbx.bump, warnings))
+            .map(|f| (f, true))
+    });
     let normal = normal.filter(|((_, image, is_missing), is_bump)| {
         // Most bump maps hold heights: a checkerboard of normals would be wrong.
         if *is_missing && *is_bump {
-            warnings.add("bump maps that are not there are left out", shown(&image.name()));
+            warnings.add(
+                "bump maps that are not there are left out",
+                shown(&image.name()),
+            );
         }
         !(*is_missing && *is_bump)
     });
@@ -69,7 +96,10 @@ fn convert(from: &From, pictures: &mut Pictures, warnings: &mut Warnings) -> Rea
         warnings.add(what, &name);
     }
     let picture = |found: Option<(usize, _, bool)>| {
-        found.map(|(number, image, _)| Picture { image, lookup: references.lookup(Some(number), &uv) })
+        found.map(|(number, image, _)| Picture {
+            image,
+            lookup: references.lookup(Some(number), &uv),
+        })
     };
     let is_bump = normal.as_ref().is_some_and(|(_, is_bump)| *is_bump);
     let maps = Maps {
@@ -83,36 +113,87 @@ fn convert(from: &From, pictures: &mut Pictures, warnings: &mut Warnings) -> Rea
     };
     let mut parts = parts(from, is_phong, maps, name);
     let has_alpha = parts.maps.alpha.is_some();
-    parts.opacity = opacity(parts.opacity, has_alpha, parts.cutoff(), &parts.name, warnings);
+    parts.opacity = opacity(
+        parts.opacity,
+        has_alpha,
+        parts.cutoff(),
+        &parts.name,
+        warnings,
+    );
     let asked = parts.build(pictures.requests);
-    Read { asked: Asked { material: reflective(from, is_phong, asked.material), ..asked }, uv }
+    Read {
+        asked: Asked {
+            material: reflective(from, is_phong, asked.material),
+            ..asked
+        },
+        uv,
+    }
 }
 
 /// The numbers. A texture replaces the value, and the factor multiplies it.
 fn parts(from: &From, is_phong: bool, maps: Maps, name: String) -> Parts {
     let (pbr, fbx) = (&from.pbr, &from.fbx);
     let tinted = |map: &MaterialMap, factor: &MaterialMap, has_map: bool, default: Vec3| {
-        let value = if map.has_value { color(rgb(map)).unwrap_or(default) } else { default };
+        let value = if map.has_value {
+            color(rgb(map)).unwrap_or(default)
+        } else {
+            default
+        };
         let factor = number(factor).unwrap_or(1.0).max(0.0);
-        if has_map { Vec3::splat(factor) } else { value * factor }
+        if has_map {
+            Vec3::splat(factor)
+        } else {
+            value * factor
+        }
     };
-    let base_color = tinted(&pbr.base_color, &pbr.base_factor, maps.color.is_some(), Vec3::splat(0.8));
-    let emission = tinted(&pbr.emission_color, &pbr.emission_factor, maps.emission.is_some(), Vec3::ZERO);
+    let base_color = tinted(
+        &pbr.base_color,
+        &pbr.base_factor,
+        maps.color.is_some(),
+        Vec3::splat(0.8),
+    );
+    let emission = tinted(
+        &pbr.emission_color,
+        &pbr.emission_factor,
+        maps.emission.is_some(),
+        Vec3::ZERO,
+    );
     let opacity = match () {
         () if maps.alpha.is_some() => None,
         () if is_phong => opacity_of_phong(from),
-        () => color(rgb(&pbr.opacity)).filter(|_| pbr.opacity.has_value).map(|v| v.element_sum() / 3.0),
+        () => color(rgb(&pbr.opacity))
+            .filter(|_| pbr.opacity.has_value)
+            .map(|v| v.element_sum() / 3.0),
     };
     let gloss = number(&pbr.glossiness).map(|gloss| 1.0 - gloss);
-    let roughness = |has_map: bool| if has_map { Some(1.0) } else { number(&pbr.roughness).or(gloss) };
+    let roughness = |has_map: bool| {
+        if has_map {
+            Some(1.0)
+        } else {
+            number(&pbr.roughness).or(gloss)
+        }
+    };
     Parts {
         base_color: base_color.min(Vec3::ONE),
-        emission: if emission.is_finite() { emission } else { Vec3::ZERO },
+        emission: if emission.is_finite() {
+            emission
+        } else {
+            Vec3::ZERO
+        },
         opacity: opacity.unwrap_or(1.0),
         cutoff: None,
-        roughness: if is_phong { None } else { roughness(maps.roughness.is_some()) },
-        exponent: number(&fbx.specular_exponent).filter(|_| from.shader_type != ShaderType::FbxLambert),
-        metallic: if maps.metallic.is_some() { Some(1.0) } else { number(&pbr.metalness) },
+        roughness: if is_phong {
+            None
+        } else {
+            roughness(maps.roughness.is_some())
+        },
+        exponent: number(&fbx.specular_exponent)
+            .filter(|_| from.shader_type != ShaderType::FbxLambert),
+        metallic: if maps.metallic.is_some() {
+            Some(1.0)
+        } else {
+            number(&pbr.metalness)
+        },
         maps,
         name,
     }
@@ -124,7 +205,11 @@ fn opacity_of_phong(from: &From) -> Option<f32> {
         return Some(opacity.value_vec4.x as f32).filter(|v| v.is_finite());
     }
     let through = &from.fbx.transparency_color;
-    let mean = if through.has_value { rgb(through).element_sum() / 3.0 } else { 1.0 };
+    let mean = if through.has_value {
+        rgb(through).element_sum() / 3.0
+    } else {
+        1.0
+    };
     let factor = number(&from.fbx.transparency_factor)?;
     Some(1.0 - factor * mean as f32).filter(|v| v.is_finite())
 }
@@ -137,8 +222,12 @@ fn reflective(from: &From, is_phong: bool, material: Material) -> Material {
     let pbr = &from.pbr;
     let tint = color(rgb(&pbr.specular_color)).filter(|_| pbr.specular_color.has_value);
     Material {
-        ior: number(&pbr.specular_ior).unwrap_or(material.ior).clamp(0.0, 1e6),
-        specular: number(&pbr.specular_factor).unwrap_or(material.specular).clamp(0.0, 1.0),
+        ior: number(&pbr.specular_ior)
+            .unwrap_or(material.ior)
+            .clamp(0.0, 1e6),
+        specular: number(&pbr.specular_factor)
+            .unwrap_or(material.specular)
+            .clamp(0.0, 1.0),
         specular_color: tint.unwrap_or(material.specular_color),
         ..material
     }
@@ -154,7 +243,11 @@ fn rgb(map: &MaterialMap) -> DVec3 {
     let v = &map.value_vec4;
     match map.value_components {
         1 => DVec3::splat(v.x),
-        _ => vector(ufbx::Vec3 { x: v.x, y: v.y, z: v.z }),
+        _ => vector(ufbx::Vec3 {
+            x: v.x,
+            y: v.y,
+            z: v.z,
+        }),
     }
 }
 

@@ -37,41 +37,77 @@ pub(super) fn read(
     let mut room = MANY + bytes;
     let mut used = false;
     let (mut meshes, mut rigs) = (Vec::new(), Rigs::new());
-    for Wanted { mesh: number, materials: list } in wanted {
+    for Wanted {
+        mesh: number,
+        materials: list,
+    } in wanted
+    {
         if progress.stopped() {
             return Err(String::new());
         }
-        let Some(from) = file.meshes.as_ref().get(*number as usize) else { return Err(damaged()) };
+        let Some(from) = file.meshes.as_ref().get(*number as usize) else {
+            return Err(damaged());
+        };
         let name = name(from);
         room = room
             .checked_sub(from.num_triangles.saturating_mul(3))
-            .ok_or_else(|| format!("mesh '{name}': with it there are many more corners than the file holds bytes"))?;
+            .ok_or_else(|| {
+                format!(
+                    "mesh '{name}': with it there are many more corners than the file holds bytes"
+                )
+            })?;
         let of_part = |part: usize| list.get(part).map_or(materials.len(), |m| *m as usize);
         let (skin, blends) = (skins::of(from), blends::any(from));
         let is_rigged = skin.is_some() || blends;
         if is_rigged {
-            let mut rig = Rig { morphs: blends::morphs(from, &mut room)?, ..Rig::default() };
-            skin.into_iter().for_each(|skin| skins::add(&mut rig, from, skin, warnings));
+            let mut rig = Rig {
+                morphs: blends::morphs(from, &mut room)?,
+                ..Rig::default()
+            };
+            skin.into_iter()
+                .for_each(|skin| skins::add(&mut rig, from, skin, warnings));
             rigs.insert(meshes.len(), rig);
         }
         let (corners, sources) = (Vec::new(), Vec::new());
-        let mut reader = Reader { from, is_rigged, corners, sources, triangles: vec![0; from.max_face_triangles * 3] };
+        let mut reader = Reader {
+            from,
+            is_rigged,
+            corners,
+            sources,
+            triangles: vec![0; from.max_face_triangles * 3],
+        };
         let mut submeshes = Vec::new();
         for (part, faces) in from.material_parts.iter().enumerate() {
             let material = of_part(part);
             let read = materials.get(material);
-            if read.is_some_and(|read| read.asked.material.is_left_out()) || faces.num_triangles == 0 {
+            if read.is_some_and(|read| read.asked.material.is_left_out())
+                || faces.num_triangles == 0
+            {
                 continue;
             }
             used |= read.is_none();
             let first = reader.corners.len();
             reader.add(&faces.face_indices, read).ok_or_else(damaged)?;
             let index_count = (reader.corners.len() - first) as u32;
-            submeshes.push(Submesh { first_index: first as u32, index_count, material: material as u32 });
+            submeshes.push(Submesh {
+                first_index: first as u32,
+                index_count,
+                material: material as u32,
+            });
         }
         let (vertices, indices, sources) = weld_sources(&reader.corners, &reader.sources);
-        let mesh = Mesh { name, vertices, indices, submeshes };
-        meshes.push(RawMesh { mesh, sources, has_normals: true, has_tangents: false });
+        let mesh = Mesh {
+            name,
+            vertices,
+            indices,
+            submeshes,
+        };
+        meshes.push(RawMesh {
+            mesh,
+            sources,
+            has_normals: true,
+            has_tangents: false,
+        });
     }
     Ok((meshes, rigs, used))
 }
@@ -79,8 +115,17 @@ pub(super) fn read(
 /// Its own name, or that of its first node.
 fn name(from: &From) -> String {
     let own = from.element.name.as_ref();
-    let node = from.element.instances.into_iter().next().map(|node| node.element.name.as_ref());
-    if own.is_empty() { node.unwrap_or_default().to_owned() } else { own.to_owned() }
+    let node = from
+        .element
+        .instances
+        .into_iter()
+        .next()
+        .map(|node| node.element.name.as_ref());
+    if own.is_empty() {
+        node.unwrap_or_default().to_owned()
+    } else {
+        own.to_owned()
+    }
 }
 
 fn damaged() -> String {
@@ -130,7 +175,11 @@ impl Reader<'_> {
         let from = self.from;
         let color = color(from, index)?;
         if !self.is_rigged {
-            let normal = if from.skinned_normal.exists { vector_at(&from.skinned_normal, index)? } else { [0.0; 3] };
+            let normal = if from.skinned_normal.exists {
+                vector_at(&from.skinned_normal, index)?
+            } else {
+                [0.0; 3]
+            };
             return Some(Vertex {
                 position: vector_at(&from.skinned_position, index)?,
                 normal,
@@ -141,8 +190,17 @@ impl Reader<'_> {
         let vertex = *from.vertex_indices.as_ref().get(index)?;
         self.sources.push(vertex);
         let position = vector_at(&from.vertex_position, index)?;
-        let normal = if from.vertex_normal.exists { vector_at(&from.vertex_normal, index)? } else { [0.0; 3] };
-        Some(Vertex { position, normal, color, ..Vertex::default() })
+        let normal = if from.vertex_normal.exists {
+            vector_at(&from.vertex_normal, index)?
+        } else {
+            [0.0; 3]
+        };
+        Some(Vertex {
+            position,
+            normal,
+            color,
+            ..Vertex::default()
+        })
     }
 }
 
@@ -150,8 +208,14 @@ impl Reader<'_> {
 fn set<'a>(from: &'a From, source: Option<&'a UvSource>) -> Option<Set<'a>> {
     let source = source?;
     let sets = from.uv_sets.as_ref();
-    let set = sets.iter().find(|set| set.name == source.set.as_str()).or(sets.first())?;
-    Some(Set { values: &set.vertex_uv, source })
+    let set = sets
+        .iter()
+        .find(|set| set.name == source.set.as_str())
+        .or(sets.first())?;
+    Some(Set {
+        values: &set.vertex_uv,
+        source,
+    })
 }
 
 /// Texture coordinates of a mesh, placed as a texture asks for.
@@ -166,13 +230,19 @@ impl Set<'_> {
     fn at(&self, corner: usize) -> Option<[f32; 2]> {
         let index = *self.values.indices.as_ref().get(corner)?;
         let uv = self.values.values.as_ref().get(index as usize)?;
-        let placed = self.source.transform.transform_point2(DVec2::new(uv.x, uv.y));
+        let placed = self
+            .source
+            .transform
+            .transform_point2(DVec2::new(uv.x, uv.y));
         Some([placed.x as f32, (1.0 - placed.y) as f32])
     }
 }
 
 fn vector_at(list: &ufbx::VertexVec3, index: usize) -> Option<[f32; 3]> {
-    let value = list.values.as_ref().get(*list.indices.as_ref().get(index)? as usize)?;
+    let value = list
+        .values
+        .as_ref()
+        .get(*list.indices.as_ref().get(index)? as usize)?;
     Some([value.x as f32, value.y as f32, value.z as f32])
 }
 
@@ -180,9 +250,13 @@ fn vector_at(list: &ufbx::VertexVec3, index: usize) -> Option<[f32; 3]> {
 fn color(from: &From, index: usize) -> Option<[f32; 4]> {
     let colors = &from.vertex_color;
     Some(if colors.exists {
-        let value = colors.values.as_ref().get(*colors.indices.as_ref().get(index)? as usize)?;
+        let value = colors
+            .values
+            .as_ref()
+            .get(*colors.indices.as_ref().get(index)? as usize)?;
         // Most programs write sRGB.
-        let [r, g, b] = [value.x, value.y, value.z].map(|c| srgb_to_linear((c as f32).clamp(0.0, 1.0)));
+        let [r, g, b] =
+            [value.x, value.y, value.z].map(|c| srgb_to_linear((c as f32).clamp(0.0, 1.0)));
         [r, g, b, value.w as f32]
     } else {
         [1.0; 4]

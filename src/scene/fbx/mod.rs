@@ -36,8 +36,15 @@ const MAX_BYTES: u64 = 4 << 30;
 /// Geometry, materials, textures, lights and cameras of an FBX file; no sky.
 ///
 /// `clip`: the name of the animation that is played, where it is not the first.
-pub(super) fn load(path: &Path, clip: Option<&str>, progress: Progress) -> Result<Scene, SceneError> {
-    let fail = |message: String| SceneError::Model { path: path.into(), message };
+pub(super) fn load(
+    path: &Path,
+    clip: Option<&str>,
+    progress: Progress,
+) -> Result<Scene, SceneError> {
+    let fail = |message: String| SceneError::Model {
+        path: path.into(),
+        message,
+    };
     progress.step("reading", 0.0)?;
     let bytes = read_input(path, MAX_BYTES).map_err(|source| SceneError::Read {
         path: path.into(),
@@ -53,22 +60,36 @@ pub(super) fn load(path: &Path, clip: Option<&str>, progress: Progress) -> Resul
 
     progress.step("materials", 0.3)?;
     let mut requests = Requests::default();
-    let mut pictures = Pictures::new(&name, Finder::new(path.parent().unwrap_or(Path::new(""))), &mut requests);
+    let mut pictures = Pictures::new(
+        &name,
+        Finder::new(path.parent().unwrap_or(Path::new(""))),
+        &mut requests,
+    );
     let mut materials = materials::read(&file, &mut pictures, &mut warnings);
     progress.step("nodes", 0.4)?;
     let motion = Motion::read(&file, length, clip, &mut warnings).map_err(fail)?;
     let placed = nodes::place(&file, &motion, &mut warnings).map_err(fail)?;
-    let nodes::Placed { mut scene, wanted, frames, rigged } = placed;
+    let nodes::Placed {
+        mut scene,
+        wanted,
+        frames,
+        rigged,
+    } = placed;
     progress.step("textures", 0.5)?;
     let (mut textures, texture_warnings) = requests.load(progress)?;
     let asked = materials.iter_mut().map(|read| &mut read.asked).collect();
-    decide(asked, &mut textures, &materials::WORDS, |_, name, what| warnings.add(what, name));
+    decide(asked, &mut textures, &materials::WORDS, |_, name, what| {
+        warnings.add(what, name)
+    });
 
     progress.step("meshes", 0.7)?;
     let (raw, read_rigs, used) =
         meshes::read(&file, &wanted, &materials, length, &mut warnings, progress).map_err(fail)?;
     let has_colors = raw.iter().any(|raw| raw.mesh.has_colors());
-    scene.materials = materials.into_iter().map(|read| read.asked.material).collect();
+    scene.materials = materials
+        .into_iter()
+        .map(|read| read.asked.material)
+        .collect();
     if used {
         scene.materials.push(grey(has_colors));
     }
@@ -84,16 +105,29 @@ pub(super) fn load(path: &Path, clip: Option<&str>, progress: Progress) -> Resul
     }
     let mut posings = Vec::new();
     for (instance, mesh) in rigged {
-        let joints = skins::of(mesh).map(|skin| skins::joints(skin, &frames, &mut warnings)).unwrap_or_default();
-        let weights = blends::weights(mesh, &motion)
-            .ok_or_else(|| fail("a blend shape has weights that are not finite. Export it again".into()))?;
-        posings.push(Posing { instance, joints, weights, period: motion.period });
+        let joints = skins::of(mesh)
+            .map(|skin| skins::joints(skin, &frames, &mut warnings))
+            .unwrap_or_default();
+        let weights = blends::weights(mesh, &motion).ok_or_else(|| {
+            fail("a blend shape has weights that are not finite. Export it again".into())
+        })?;
+        posings.push(Posing {
+            instance,
+            joints,
+            weights,
+            period: motion.period,
+        });
     }
     attach(&mut scene, posings, &rigs, meshes::MANY + length).map_err(fail)?;
     scene.warnings = warnings.lines(&name);
     scene.warnings.extend(dropped.warning(&name));
     scene.warnings.extend(texture_warnings);
     scene.textures = textures;
-    scene.instances.retain(|i| scene.meshes.get(i.mesh as usize).is_some_and(|mesh| !mesh.submeshes.is_empty()));
+    scene.instances.retain(|i| {
+        scene
+            .meshes
+            .get(i.mesh as usize)
+            .is_some_and(|mesh| !mesh.submeshes.is_empty())
+    });
     Ok(scene)
 }

@@ -41,12 +41,27 @@ pub(super) struct Placed<'a> {
 }
 
 /// Instances, lights and cameras, and the meshes that instances name.
-pub(super) fn place<'a>(file: &'a ufbx::Scene, motion: &Motion, warnings: &mut Warnings) -> Result<Placed<'a>, String> {
+pub(super) fn place<'a>(
+    file: &'a ufbx::Scene,
+    motion: &Motion,
+    warnings: &mut Warnings,
+) -> Result<Placed<'a>, String> {
     let (mut placed, mut frames, mut rigged) = (Scene::default(), Frames::new(), Vec::new());
     let mut wanted = IndexSet::new();
     let root = file.root_node.as_ref();
-    let mut stack = vec![Visit { node: root, mover: None, above: DAffine3::IDENTITY, visible: true }];
-    while let Some(Visit { node, mut mover, above, visible }) = stack.pop() {
+    let mut stack = vec![Visit {
+        node: root,
+        mover: None,
+        above: DAffine3::IDENTITY,
+        visible: true,
+    }];
+    while let Some(Visit {
+        node,
+        mut mover,
+        above,
+        visible,
+    }) = stack.pop()
+    {
         let visible = is_visible(node, visible);
         let name = name(node);
         if !visible && (node.mesh.is_some() || node.light.is_some()) {
@@ -54,18 +69,31 @@ pub(super) fn place<'a>(file: &'a ufbx::Scene, motion: &Motion, warnings: &mut W
         }
         let mut local = above * frame(&node.local_transform);
         if let Some(track) = motion.of(node) {
-            placed.movers.push(Mover { parent: mover, placed: placement(&above), track });
+            placed.movers.push(Mover {
+                parent: mover,
+                placed: placement(&above),
+                track,
+            });
             (mover, local) = (Some(placed.movers.len() as u32 - 1), DAffine3::IDENTITY);
         }
         frames.insert(node.element.typed_id, (mover, placement(&local)));
         let here = local * affine(&node.geometry_to_node);
         if let Some(mesh) = node.mesh.as_ref().filter(|_| visible) {
-            let materials = node.materials.into_iter().map(|material| material.element.typed_id).collect();
-            let (mesh, _) = wanted.insert_full(Wanted { mesh: mesh.element.typed_id, materials });
+            let materials = node
+                .materials
+                .into_iter()
+                .map(|material| material.element.typed_id)
+                .collect();
+            let (mesh, _) = wanted.insert_full(Wanted {
+                mesh: mesh.element.typed_id,
+                materials,
+            });
             let mesh_of = node.mesh.as_ref().map(|mesh| mesh.as_ref());
             let moves = mesh_of.filter(|mesh| skins::of(mesh).is_some() || blends::any(mesh));
             rigged.extend(moves.map(|mesh| (placed.instances.len(), mesh)));
-            placed.instances.push(instance(node, mesh as u32, &name, (mover, here))?);
+            placed
+                .instances
+                .push(instance(node, mesh as u32, &name, (mover, here))?);
         }
         // Lights and cameras stand where they are at the start.
         let moves = mover.is_some() && (node.light.is_some() || node.camera.is_some());
@@ -73,7 +101,11 @@ pub(super) fn place<'a>(file: &'a ufbx::Scene, motion: &Motion, warnings: &mut W
             true => DAffine3::from_mat4(placed.moved(mover, placement(&here), 0.0).as_dmat4()),
             false => here,
         };
-        if let Some(light) = node.light.as_ref().filter(|light| visible && light.cast_light) {
+        if let Some(light) = node
+            .light
+            .as_ref()
+            .filter(|light| visible && light.cast_light)
+        {
             match lights::read(light, file.metadata.exporter, &name, &start, warnings) {
                 Ok(light) => placed.lights.push(light),
                 Err(why) => warnings.add(format!("lights that have {why} are left out"), &name),
@@ -88,7 +120,10 @@ pub(super) fn place<'a>(file: &'a ufbx::Scene, motion: &Motion, warnings: &mut W
             }
         }
         if moves {
-            warnings.add("lights and cameras of moving nodes stay where they are at 0 s", &name);
+            warnings.add(
+                "lights and cameras of moving nodes stay where they are at 0 s",
+                &name,
+            );
         }
         let children = node.children.as_ref();
         // Levels of detail show the same thing; the first is the finest.
@@ -98,38 +133,77 @@ pub(super) fn place<'a>(file: &'a ufbx::Scene, motion: &Motion, warnings: &mut W
         } else {
             children
         };
-        let below = |child: &'a ufbx::Ref<Node>| Visit { node: child.as_ref(), mover, above: local, visible };
+        let below = |child: &'a ufbx::Ref<Node>| Visit {
+            node: child.as_ref(),
+            mover,
+            above: local,
+            visible,
+        };
         stack.extend(children.iter().rev().map(below));
     }
     // The camera through which the author looked comes first.
-    if let Some(own) = placed.cameras.get_index_of(file.settings.default_camera.as_ref()) {
+    if let Some(own) = placed
+        .cameras
+        .get_index_of(file.settings.default_camera.as_ref())
+    {
         placed.cameras.move_index(own, 0);
     }
-    Ok(Placed { scene: placed, wanted: wanted.into_iter().collect(), frames, rigged })
+    Ok(Placed {
+        scene: placed,
+        wanted: wanted.into_iter().collect(),
+        frames,
+        rigged,
+    })
 }
 
-fn instance(node: &Node, mesh: u32, name: &str, (mover, here): (Option<u32>, DAffine3)) -> Result<Instance, String> {
+fn instance(
+    node: &Node,
+    mesh: u32,
+    name: &str,
+    (mover, here): (Option<u32>, DAffine3),
+) -> Result<Instance, String> {
     // Bones place the vertices of a skin in the world.
-    let is_skinned = node.mesh.as_ref().is_some_and(|mesh| skins::of(mesh).is_some() || !mesh.skinned_is_local);
-    let (mover, here) = if is_skinned { (None, DAffine3::IDENTITY) } else { (mover, here) };
+    let is_skinned = node
+        .mesh
+        .as_ref()
+        .is_some_and(|mesh| skins::of(mesh).is_some() || !mesh.skinned_is_local);
+    let (mover, here) = if is_skinned {
+        (None, DAffine3::IDENTITY)
+    } else {
+        (mover, here)
+    };
     let transform = placement(&here);
     if !transform.is_finite() {
-        return Err(format!("node '{name}' has a transform that is not finite. Export it again"));
+        return Err(format!(
+            "node '{name}' has a transform that is not finite. Export it again"
+        ));
     }
-    Ok(Instance { name: name.to_owned(), mesh, transform, mover })
+    Ok(Instance {
+        name: name.to_owned(),
+        mesh,
+        transform,
+        mover,
+    })
 }
 
 /// Its own name; helpers of ufbx have that of their parent.
 fn name(node: &Node) -> String {
     let own = match &node.parent {
-        Some(parent) if node.is_scale_helper || node.is_geometry_transform_helper => &parent.element.name,
+        Some(parent) if node.is_scale_helper || node.is_geometry_transform_helper => {
+            &parent.element.name
+        }
         _ => &node.element.name,
     };
-    if own.is_empty() { format!("node {}", node.element.typed_id) } else { shown(own) }
+    if own.is_empty() {
+        format!("node {}", node.element.typed_id)
+    } else {
+        shown(own)
+    }
 }
 
 fn is_visible(node: &Node, above: bool) -> bool {
-    let inherits = find_prop(&node.element.props, "Visibility Inheritance").is_none_or(|prop| prop.value_int != 0);
+    let inherits = find_prop(&node.element.props, "Visibility Inheritance")
+        .is_none_or(|prop| prop.value_int != 0);
     node.visible && (above || !inherits)
 }
 
@@ -143,8 +217,23 @@ fn camera(from: &From, world: &DAffine3, unit: f64) -> Option<Camera> {
     let (ahead, up) = (axis(DVec3::X), axis(DVec3::Y));
     let fov_y = from.field_of_view_deg.y as f32;
     let unit = if unit > 0.0 { unit } else { 1.0 };
-    let (near, far) = ((from.near_plane * unit) as f32, (from.far_plane * unit) as f32);
-    let usable = eye.is_finite() && fov_y > 0.0 && fov_y < 180.0 && near > 0.0 && near.is_finite() && far > near;
+    let (near, far) = (
+        (from.near_plane * unit) as f32,
+        (from.far_plane * unit) as f32,
+    );
+    let usable = eye.is_finite()
+        && fov_y > 0.0
+        && fov_y < 180.0
+        && near > 0.0
+        && near.is_finite()
+        && far > near;
     let target = eye + ahead * least_reach(eye).max(1.0);
-    usable.then_some(Camera { eye, target, up, fov_y, near, far })
+    usable.then_some(Camera {
+        eye,
+        target,
+        up,
+        fov_y,
+        near,
+        far,
+    })
 }

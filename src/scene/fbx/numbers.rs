@@ -21,7 +21,11 @@ pub(super) fn placed(translation: ufbx::Vec3, rotation: ufbx::Quat, scale: ufbx:
     DAffine3::from_scale_rotation_translation(
         vector(scale),
         // Without a length it turns nothing.
-        if rotation.is_finite() && rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY },
+        if rotation.is_finite() && rotation.length_squared() > 0.0 {
+            rotation.normalize()
+        } else {
+            DQuat::IDENTITY
+        },
         vector(translation),
     )
 }
@@ -42,5 +46,7 @@ pub(super) fn placement(m: &DAffine3) -> Mat4 {
 
 /// A colour of finite numbers at or above 0.
 pub(super) fn color(v: DVec3) -> Option<Vec3> {
-    Some(v.as_vec3()).filter(|v| v.is_finite()).map(|v| v.max(Vec3::ZERO))
+    Some(v.as_vec3())
+        .filter(|v| v.is_finite())
+        .map(|v| v.max(Vec3::ZERO))
 }

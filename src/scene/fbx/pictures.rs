@@ -35,7 +35,12 @@ pub(super) struct Laid {
 
 impl<'a> Pictures<'a> {
     pub fn new(name: &'a str, finder: Finder, requests: &'a mut Requests) -> Pictures<'a> {
-        Pictures { name, finder, requests, held: HashMap::new() }
+        Pictures {
+            name,
+            finder,
+            requests,
+            held: HashMap::new(),
+        }
     }
 
     /// The picture of a texture; of layers the first one.
@@ -46,42 +51,80 @@ impl<'a> Pictures<'a> {
             return None;
         };
         if texture.type_ != TextureType::File {
-            warnings.add("of textures in layers and of procedural ones the first picture is used", name);
+            warnings.add(
+                "of textures in layers and of procedural ones the first picture is used",
+                name,
+            );
         }
-        let wrap = |mode: WrapMode| if mode == WrapMode::Clamp { Wrap::Clamp } else { Wrap::Repeat };
+        let wrap = |mode: WrapMode| {
+            if mode == WrapMode::Clamp {
+                Wrap::Clamp
+            } else {
+                Wrap::Repeat
+            }
+        };
         let to_texture = affine(&file.uv_to_texture);
         let transform = DAffine2::from_mat2_translation(
-            glam::DMat2::from_cols(to_texture.matrix3.x_axis.truncate(), to_texture.matrix3.y_axis.truncate()),
+            glam::DMat2::from_cols(
+                to_texture.matrix3.x_axis.truncate(),
+                to_texture.matrix3.y_axis.truncate(),
+            ),
             to_texture.translation.truncate(),
         );
         let (image, is_missing) = self.image(file, warnings);
         Some(Laid {
             image,
-            source: UvSource { set: file.uv_set.to_string(), transform },
-            lookup: Lookup { wrap: [wrap(file.wrap_u), wrap(file.wrap_v)], ..Lookup::default() },
+            source: UvSource {
+                set: file.uv_set.to_string(),
+                transform,
+            },
+            lookup: Lookup {
+                wrap: [wrap(file.wrap_u), wrap(file.wrap_v)],
+                ..Lookup::default()
+            },
             is_missing,
         })
     }
 
     /// The bytes in the document, or the file by its relative name, or by the one on its author's machine.
     fn image(&mut self, file: &Texture, warnings: &mut Warnings) -> (Source, bool) {
-        let texts = [file.relative_filename.as_ref(), file.absolute_filename.as_ref(), file.filename.as_ref()];
+        let texts = [
+            file.relative_filename.as_ref(),
+            file.absolute_filename.as_ref(),
+            file.filename.as_ref(),
+        ];
         let bytes: &[u8] = &file.content;
         if !bytes.is_empty() {
             let key = (bytes.as_ptr() as usize, bytes.len());
             let name = || {
-                let text = texts.into_iter().find(|text| !text.is_empty()).unwrap_or("picture");
-                format!("{}: {}", self.name, shown(text.rsplit(['/', '\\']).next().unwrap_or(text)))
+                let text = texts
+                    .into_iter()
+                    .find(|text| !text.is_empty())
+                    .unwrap_or("picture");
+                format!(
+                    "{}: {}",
+                    self.name,
+                    shown(text.rsplit(['/', '\\']).next().unwrap_or(text))
+                )
             };
-            let source = self.held.entry(key).or_insert_with(|| match bytes.len() as u64 > MAX_FILE_BYTES {
-                true => Source::Missing(name(), format!("it has more than {MAX_FILE_BYTES} bytes")),
-                false => Source::Bytes(name(), Arc::new(bytes.to_vec())),
-            });
+            let source =
+                self.held
+                    .entry(key)
+                    .or_insert_with(|| match bytes.len() as u64 > MAX_FILE_BYTES {
+                        true => Source::Missing(
+                            name(),
+                            format!("it has more than {MAX_FILE_BYTES} bytes"),
+                        ),
+                        false => Source::Bytes(name(), Arc::new(bytes.to_vec())),
+                    });
             return (source.clone(), false);
         }
         let named = || texts.into_iter().filter(|text| !text.is_empty());
         let Some(first) = named().next() else {
-            return (Source::Missing(shown(&file.element.name), "it names no file".into()), true);
+            return (
+                Source::Missing(shown(&file.element.name), "it names no file".into()),
+                true,
+            );
         };
         for found in [Found::Exact, Found::Elsewhere] {
             if let Some(text) = named().find(|text| self.finder.look(text).1 == found) {

@@ -13,7 +13,9 @@ pub(super) fn warn(file: &ufbx::Scene, warnings: &mut Warnings) {
             ElementType::NurbsSurface | ElementType::NurbsTrimSurface => {
                 "NURBS surfaces are left out. Convert them to polygons"
             }
-            ElementType::ProceduralGeometry => "procedural geometry is left out. Convert it to polygons",
+            ElementType::ProceduralGeometry => {
+                "procedural geometry is left out. Convert it to polygons"
+            }
             ElementType::CacheDeformer => "geometry caches are left out: their meshes stay at rest",
             ElementType::BlendChannel if has_steps(element) => {
                 "blend shapes with shapes in between stay at the weights of the file"
@@ -21,13 +23,21 @@ pub(super) fn warn(file: &ufbx::Scene, warnings: &mut Warnings) {
             ElementType::StereoCamera | ElementType::CameraSwitcher => {
                 "stereo cameras and camera switchers are left out"
             }
-            ElementType::Constraint => "constraints are left out: nodes stay where the file has them",
+            ElementType::Constraint => {
+                "constraints are left out: nodes stay where the file has them"
+            }
             _ => continue,
         };
         warnings.add(what, shown(&element.name));
     }
     for warning in &file.metadata.warnings {
-        warnings.add(format!("the file has mistakes that were corrected ({})", warning.description.to_lowercase()), "");
+        warnings.add(
+            format!(
+                "the file has mistakes that were corrected ({})",
+                warning.description.to_lowercase()
+            ),
+            "",
+        );
     }
 }
 
@@ -39,10 +49,19 @@ fn has_steps(element: &ufbx::Element) -> bool {
 /// The kind of a material, if it is unknown, and its maps and layers that are left out.
 pub(super) fn warn_of_material(from: &Material, is_phong: bool, warnings: &mut Warnings) {
     let name = shown(&from.element.name);
-    if matches!(from.shader_type, ShaderType::Unknown | ShaderType::ShaderfxGraph) {
+    if matches!(
+        from.shader_type,
+        ShaderType::Unknown | ShaderType::ShaderfxGraph
+    ) {
         let kind = shown(&from.shading_model_name);
-        let kind = if kind.is_empty() { "no name".into() } else { format!("'{kind}'") };
-        let what = format!("materials of a kind that is not known ({kind}) have only their common colours and maps");
+        let kind = if kind.is_empty() {
+            "no name".into()
+        } else {
+            format!("'{kind}'")
+        };
+        let what = format!(
+            "materials of a kind that is not known ({kind}) have only their common colours and maps"
+        );
         warnings.add(what, &name);
     }
     let (pbr, fbx) = (&from.pbr, &from.fbx);
@@ -50,12 +69,21 @@ pub(super) fn warn_of_material(from: &Material, is_phong: bool, warnings: &mut W
     let is_on = |map: &MaterialMap| !is_phong && map.has_value && map.value_vec4.x > 0.0;
     let exponent = is_phong && has_map(&fbx.specular_exponent);
     let left_out = [
-        (has_map(&pbr.specular_color) || has_map(&pbr.specular_factor), "maps of the specular colour are"),
+        (
+            has_map(&pbr.specular_color) || has_map(&pbr.specular_factor),
+            "maps of the specular colour are",
+        ),
         (exponent, "maps of the specular exponent are"),
         (has_map(&pbr.glossiness), "maps of the glossiness are"),
-        (has_map(&pbr.ambient_occlusion), "maps of ambient occlusion are"),
+        (
+            has_map(&pbr.ambient_occlusion),
+            "maps of ambient occlusion are",
+        ),
         (has_map(&fbx.reflection_color), "maps of reflections are"),
-        (has_map(&fbx.displacement) || has_map(&pbr.displacement_map), "displacement maps are"),
+        (
+            has_map(&fbx.displacement) || has_map(&pbr.displacement_map),
+            "displacement maps are",
+        ),
         (is_on(&pbr.coat_factor), "coats are"),
         (is_on(&pbr.sheen_factor), "sheen is"),
         (is_on(&pbr.transmission_factor), "transmission is"),

@@ -43,17 +43,25 @@ pub(super) fn add(scene: &mut Scene, mut model: Scene) -> Added {
         scene.materials.push(material);
     }
     for mut mesh in std::mem::take(&mut model.meshes) {
-        mesh.submeshes.iter_mut().for_each(|submesh| submesh.material += first_material);
+        mesh.submeshes
+            .iter_mut()
+            .for_each(|submesh| submesh.material += first_material);
         scene.meshes.push(mesh);
     }
-    model.instances.iter_mut().for_each(|instance| instance.mesh += first_mesh);
+    model
+        .instances
+        .iter_mut()
+        .for_each(|instance| instance.mesh += first_mesh);
     let mut deformers = std::mem::take(&mut model.deformers);
     if !deformers.is_empty() {
         // Skins follow frames in the model's own space, whatever it is placed by.
         let first = add_movers(scene, &model.movers, None, Mat4::IDENTITY);
         for deformer in &mut deformers {
             deformer.mesh += first_mesh;
-            deformer.joints.iter_mut().for_each(|joint| joint.mover = joint.mover.map(|m| m + first));
+            deformer
+                .joints
+                .iter_mut()
+                .for_each(|joint| joint.mover = joint.mover.map(|m| m + first));
         }
         scene.deformers.append(&mut deformers);
     }
@@ -64,47 +72,84 @@ pub(super) fn add(scene: &mut Scene, mut model: Scene) -> Added {
 pub(super) fn add_placed(scene: &mut Scene, model: &Scene, entry: &ModelEntry) {
     let frame = entry.transform;
     let own = entry.motion.clone().map(|track| {
-        scene.movers.push(Mover { parent: None, placed: Mat4::IDENTITY, track });
+        scene.movers.push(Mover {
+            parent: None,
+            placed: Mat4::IDENTITY,
+            track,
+        });
         scene.movers.len() as u32 - 1
     });
     let moves = model.instances.iter().any(|i| i.mover.is_some());
     let fits = scene.movers.len() + model.movers.len() <= MAX_MOVERS;
     if moves && !fits {
-        scene
-            .warnings
-            .push(format!("{}: it stands still, because there are more than {MAX_MOVERS} moving nodes", model.name));
+        scene.warnings.push(format!(
+            "{}: it stands still, because there are more than {MAX_MOVERS} moving nodes",
+            model.name
+        ));
     }
     let first = (moves && fits).then(|| add_movers(scene, &model.movers, own, frame));
-    scene.instances.extend(model.instances.iter().enumerate().map(|(i, instance)| {
-        let placed = |transform| Instance { transform, mover: own, ..instance.clone() };
-        match (instance.mover, first) {
-            (Some(mover), Some(first)) => Instance { mover: Some(mover + first), ..instance.clone() },
-            (Some(_), None) => placed(frame * model.instance_transform(i, 0.0)),
-            (None, _) => placed(frame * instance.transform),
-        }
-    }));
+    scene
+        .instances
+        .extend(model.instances.iter().enumerate().map(|(i, instance)| {
+            let placed = |transform| Instance {
+                transform,
+                mover: own,
+                ..instance.clone()
+            };
+            match (instance.mover, first) {
+                (Some(mover), Some(first)) => Instance {
+                    mover: Some(mover + first),
+                    ..instance.clone()
+                },
+                (Some(_), None) => placed(frame * model.instance_transform(i, 0.0)),
+                (None, _) => placed(frame * instance.transform),
+            }
+        }));
     for mut light in model.lights.iter().filter(|_| entry.lights).cloned() {
         light.position = frame.transform_point3(light.position);
-        light.direction = frame.transform_vector3(light.direction).normalize_or(light.direction);
+        light.direction = frame
+            .transform_vector3(light.direction)
+            .normalize_or(light.direction);
         light.color *= entry.lights_scale.unwrap_or(1.0);
         scene.lights.push(light);
     }
-    for (name, mut camera) in model.cameras.iter().filter(|_| entry.cameras).map(|(n, c)| (n.clone(), *c)) {
+    for (name, mut camera) in model
+        .cameras
+        .iter()
+        .filter(|_| entry.cameras)
+        .map(|(n, c)| (n.clone(), *c))
+    {
         camera.eye = frame.transform_point3(camera.eye);
         camera.target = frame.transform_point3(camera.target);
         camera.up = frame.transform_vector3(camera.up).normalize_or(camera.up);
         // The first of a name keeps it; later ones say which model they are of.
         let taken = scene.cameras.contains_key(&name);
-        scene.cameras.insert(if taken { format!("{} {name}", model.name) } else { name }, camera);
+        scene.cameras.insert(
+            if taken {
+                format!("{} {name}", model.name)
+            } else {
+                name
+            },
+            camera,
+        );
     }
 }
 
 /// Adds a model's movers, those in its world moved with `parent` and placed by `frame`; the number of the first.
 fn add_movers(scene: &mut Scene, movers: &[Mover], parent: Option<u32>, frame: Mat4) -> u32 {
     let first = scene.movers.len() as u32;
-    scene.movers.extend(movers.iter().map(|mover| match mover.parent {
-        Some(above) => Mover { parent: Some(above + first), ..mover.clone() },
-        None => Mover { parent, placed: frame * mover.placed, track: mover.track.clone() },
-    }));
+    scene
+        .movers
+        .extend(movers.iter().map(|mover| match mover.parent {
+            Some(above) => Mover {
+                parent: Some(above + first),
+                ..mover.clone()
+            },
+            None => Mover {
+                parent,
+                placed: frame * mover.placed,
+                track: mover.track.clone(),
+            },
+        }));
     first
 }

@@ -87,14 +87,23 @@ impl TryFrom<EnvironmentFields> for EnvironmentEntry {
     type Error = String;
 
     fn try_from(fields: EnvironmentFields) -> Result<Self, String> {
-        let EnvironmentFields { file, clear_sky, rotation, intensity } = fields;
+        let EnvironmentFields {
+            file,
+            clear_sky,
+            rotation,
+            intensity,
+        } = fields;
         check_environment(rotation, intensity)?;
         let of = match (file, clear_sky) {
             (Some(file), None) => SkyOf::File(file),
             (None, Some(sky)) => SkyOf::Clear(sky),
             _ => return Err("an environment needs either a file or a clear_sky".into()),
         };
-        Ok(EnvironmentEntry { of, rotation, intensity })
+        Ok(EnvironmentEntry {
+            of,
+            rotation,
+            intensity,
+        })
     }
 }
 
@@ -152,7 +161,11 @@ struct TransformFields {
 
 impl Default for TransformFields {
     fn default() -> Self {
-        TransformFields { translate: Vec3::ZERO, rotate_deg: Vec3::ZERO, scale: Vec3::ONE }
+        TransformFields {
+            translate: Vec3::ZERO,
+            rotate_deg: Vec3::ZERO,
+            scale: Vec3::ONE,
+        }
     }
 }
 
@@ -184,15 +197,31 @@ pub(super) struct Placed(pub Mat4);
 impl TryFrom<TransformFields> for Placed {
     type Error = String;
 
-    fn try_from(TransformFields { translate, rotate_deg, scale }: TransformFields) -> Result<Self, String> {
+    fn try_from(
+        TransformFields {
+            translate,
+            rotate_deg,
+            scale,
+        }: TransformFields,
+    ) -> Result<Self, String> {
         let far = |v: Vec3| v.abs().max_element() > MAX_COORDINATE;
-        if !translate.is_finite() || !rotate_deg.is_finite() || !scale.is_finite() || scale.min_element() <= 0.0 {
+        if !translate.is_finite()
+            || !rotate_deg.is_finite()
+            || !scale.is_finite()
+            || scale.min_element() <= 0.0
+        {
             return Err("a transform's numbers must be finite and its scale above 0".into());
         }
         if far(translate) || far(scale) || scale.min_element() < 1.0 / MAX_COORDINATE {
-            return Err(format!("a model can be moved {MAX_COORDINATE:e} m at most, and scaled by as much"));
+            return Err(format!(
+                "a model can be moved {MAX_COORDINATE:e} m at most, and scaled by as much"
+            ));
         }
-        Ok(Placed(Mat4::from_scale_rotation_translation(scale, rotation(rotate_deg), translate)))
+        Ok(Placed(Mat4::from_scale_rotation_translation(
+            scale,
+            rotation(rotate_deg),
+            translate,
+        )))
     }
 }
 
@@ -268,7 +297,10 @@ impl TryFrom<ModelFields> for ModelEntry {
             }
             _ => return Err("a model needs either a file or a builtin".into()),
         }
-        if fields.lights_scale.is_some_and(|scale| !(0.0..=1e6).contains(&scale)) {
+        if fields
+            .lights_scale
+            .is_some_and(|scale| !(0.0..=1e6).contains(&scale))
+        {
             return Err("lights_scale is from 0 to 1e6".into());
         }
         Ok(ModelEntry {
@@ -328,17 +360,43 @@ impl TryFrom<LightFields> for LightEntry {
 
     fn try_from(fields: LightFields) -> Result<Self, String> {
         let (name, kind, color, position, direction, shadow) = match fields {
-            LightFields::Directional { name, color, direction, shadow } => {
-                (name, LightKind::Directional, color, Vec3::ZERO, direction, shadow)
-            }
-            LightFields::Point { name, color, position, shadow } => {
-                (name, LightKind::Point, color, position, Vec3::NEG_Y, shadow)
-            }
-            LightFields::Spot { name, color, position, direction, inner_deg, outer_deg, shadow } => {
+            LightFields::Directional {
+                name,
+                color,
+                direction,
+                shadow,
+            } => (
+                name,
+                LightKind::Directional,
+                color,
+                Vec3::ZERO,
+                direction,
+                shadow,
+            ),
+            LightFields::Point {
+                name,
+                color,
+                position,
+                shadow,
+            } => (name, LightKind::Point, color, position, Vec3::NEG_Y, shadow),
+            LightFields::Spot {
+                name,
+                color,
+                position,
+                direction,
+                inner_deg,
+                outer_deg,
+                shadow,
+            } => {
                 if !(inner_deg >= 0.0 && inner_deg < outer_deg && outer_deg <= 89.0) {
-                    return Err("a spot's half-angles must obey 0 <= inner_deg < outer_deg <= 89".into());
+                    return Err(
+                        "a spot's half-angles must obey 0 <= inner_deg < outer_deg <= 89".into(),
+                    );
                 }
-                let kind = LightKind::Spot { inner: inner_deg.to_radians(), outer: outer_deg.to_radians() };
+                let kind = LightKind::Spot {
+                    inner: inner_deg.to_radians(),
+                    outer: outer_deg.to_radians(),
+                };
                 (name, kind, color, position, direction, shadow)
             }
         };
@@ -348,8 +406,17 @@ impl TryFrom<LightFields> for LightEntry {
                 "a light's color must be finite and not negative, its position within {MAX_COORDINATE:e} m of the origin"
             ));
         }
-        let direction = direction.try_normalize().ok_or("a light's direction must be finite and not zero")?;
-        Ok(LightEntry(Light { name, kind, color, position, direction, shadow }))
+        let direction = direction
+            .try_normalize()
+            .ok_or("a light's direction must be finite and not zero")?;
+        Ok(LightEntry(Light {
+            name,
+            kind,
+            color,
+            position,
+            direction,
+            shadow,
+        }))
     }
 }
 
@@ -395,14 +462,19 @@ impl TryFrom<CameraFields> for CameraEntry {
         let forward = camera.target - camera.eye;
         let near = [camera.eye, camera.target].map(|p| p.abs().max_element() <= MAX_COORDINATE);
         if near != [true; 2] {
-            return Err(format!("a camera must be within {MAX_COORDINATE:e} m of the origin"));
+            return Err(format!(
+                "a camera must be within {MAX_COORDINATE:e} m of the origin"
+            ));
         }
         if forward == Vec3::ZERO {
             let size = camera.eye.abs().max_element();
             let step = size.next_up() - size;
-            return Err(format!("a camera's eye and target are one place: coordinates there are {step:e} m apart"));
+            return Err(format!(
+                "a camera's eye and target are one place: coordinates there are {step:e} m apart"
+            ));
         }
-        if !forward.cross(camera.up).is_finite() || forward.cross(camera.up).length_squared() == 0.0 {
+        if !forward.cross(camera.up).is_finite() || forward.cross(camera.up).length_squared() == 0.0
+        {
             return Err("a camera must look somewhere other than along its up vector".into());
         }
         if !(camera.fov_y >= 1.0 && camera.fov_y <= 170.0) {
@@ -419,7 +491,13 @@ impl TryFrom<CameraFields> for CameraEntry {
 impl CameraEntry {
     /// The camera, with the given near plane where it has none of its own.
     pub fn to_camera(&self, near: f32) -> Camera {
-        let CameraFields { eye, target, up, fov_y, .. } = self.0;
+        let CameraFields {
+            eye,
+            target,
+            up,
+            fov_y,
+            ..
+        } = self.0;
         let far = self.0.far.unwrap_or(f32::INFINITY);
         Camera {
             eye,

@@ -41,27 +41,44 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
 /// A scene by its file's text; the path is where other files are looked for, and for messages.
 pub(super) fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene, SceneError> {
     let file = parse(text, path)?;
-    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let mut scene = Scene { name: file.name.clone().unwrap_or(name), ..Scene::default() };
+    let name = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let mut scene = Scene {
+        name: file.name.clone().unwrap_or(name),
+        ..Scene::default()
+    };
     let (mut sky, mut picture) = (None, None);
     // A model that stands in several places is read once, and its meshes are shared.
     let mut added: BTreeMap<(bool, &str, Option<&str>), Added> = BTreeMap::new();
     for (i, entry) in file.models.iter().enumerate() {
-        let named = entry.builtin.as_deref().or(entry.file.as_deref()).unwrap_or_default();
+        let named = entry
+            .builtin
+            .as_deref()
+            .or(entry.file.as_deref())
+            .unwrap_or_default();
         let share = progress.share(i, file.models.len() + 1);
         let known = match added.entry((entry.builtin.is_some(), named, entry.clip.as_deref())) {
             Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(new) => new.insert(compose::add(&mut scene, load_model(entry, path, text, share)?)),
+            Entry::Vacant(new) => new.insert(compose::add(
+                &mut scene,
+                load_model(entry, path, text, share)?,
+            )),
         };
         if i == 0 {
             let own = known.sky();
             (sky, picture) = (Some(own.0), own.1);
         }
-        check_placed(&known.model, known.bounds, entry.transform)
-            .map_err(|message| in_file(path, text, named, format!("'{named}', placed: {message}")))?;
+        check_placed(&known.model, known.bounds, entry.transform).map_err(|message| {
+            in_file(path, text, named, format!("'{named}', placed: {message}"))
+        })?;
         compose::add_placed(&mut scene, &known.model, entry);
     }
-    progress.share(file.models.len(), file.models.len() + 1).step(&scene.name, 0.0)?;
+    progress
+        .share(file.models.len(), file.models.len() + 1)
+        .step(&scene.name, 0.0)?;
     let own = parts::build(&file, progress);
     let own = own.map_err(|Problem { near, message }| match progress.stopped() {
         true => SceneError::Cancelled,
@@ -72,7 +89,13 @@ pub(super) fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene,
     compose::add_placed(&mut scene, &own, &ModelEntry::default());
     match &file.environment {
         Some(entry) => {
-            scene.environment = Some(open_environment(entry, path, text, &mut scene.warnings, progress)?);
+            scene.environment = Some(open_environment(
+                entry,
+                path,
+                text,
+                &mut scene.warnings,
+                progress,
+            )?);
             scene.sky = file.sky.map_or(Vec3::ONE, |s| s.0) * entry.intensity;
         }
         // A radiance of its own takes the place of the first model's sky, picture and all.
@@ -107,19 +130,33 @@ fn open_environment(
         SkyOf::File(file) => file,
         SkyOf::Clear(sky) => {
             let sky = environment::clear_sky(sky).map_err(|m| in_file(scene_file, text, "", m))?;
-            return Ok(Environment { rotation: entry.rotation, ..sky });
+            return Ok(Environment {
+                rotation: entry.rotation,
+                ..sky
+            });
         }
     };
     let candidates = places(file, scene_file);
     // Where it is nowhere, the message is about the first place.
-    let found = candidates.iter().find(|candidate| candidate.is_file()).or(candidates.first());
+    let found = candidates
+        .iter()
+        .find(|candidate| candidate.is_file())
+        .or(candidates.first());
     found.into_iter().for_each(|f| progress.reads(f));
     let opened = environment::read(found.map_or(Path::new(""), PathBuf::as_path), warnings);
     let environment = opened.map_err(|message| in_file(scene_file, text, file, message))?;
-    Ok(Environment { rotation: entry.rotation, ..environment })
+    Ok(Environment {
+        rotation: entry.rotation,
+        ..environment
+    })
 }
 
-fn load_model(entry: &ModelEntry, scene_file: &Path, text: &str, progress: Progress) -> Result<Scene, SceneError> {
+fn load_model(
+    entry: &ModelEntry,
+    scene_file: &Path,
+    text: &str,
+    progress: Progress,
+) -> Result<Scene, SceneError> {
     if let Some(name) = &entry.builtin {
         return builtin::open(name, progress);
     }
@@ -133,7 +170,12 @@ fn load_model(entry: &ModelEntry, scene_file: &Path, text: &str, progress: Progr
             "model file '{file}' is in none of: {}. Correct the path, or set CONELAB_SCENES to the folder that holds it",
             tried.join(", ")
         );
-        return Err(SceneError::NoModel { path: scene_file.into(), line, column, message });
+        return Err(SceneError::NoModel {
+            path: scene_file.into(),
+            line,
+            column,
+            message,
+        });
     };
     let mut model = open::load_model(found, entry.clip.as_deref(), progress)?;
     if entry.lights {
@@ -142,7 +184,9 @@ fn load_model(entry: &ModelEntry, scene_file: &Path, text: &str, progress: Progr
         model.sky = defaults::SKY;
     }
     if entry.lights_scale.is_some() || !entry.lights {
-        model.warnings.retain(|warning| !warning.contains(gltf::SCALE));
+        model
+            .warnings
+            .retain(|warning| !warning.contains(gltf::SCALE));
     }
     Ok(model)
 }
@@ -151,14 +195,23 @@ fn load_model(entry: &ModelEntry, scene_file: &Path, text: &str, progress: Progr
 fn places(file: &str, scene_file: &Path) -> Vec<PathBuf> {
     let mut places = vec![scene_file.parent().unwrap_or(Path::new("")).join(file)];
     let folders = std::env::var_os("CONELAB_SCENES").unwrap_or_default();
-    places.extend(std::env::split_paths(&folders).filter(|f| !f.as_os_str().is_empty()).map(|f| f.join(file)));
+    places.extend(
+        std::env::split_paths(&folders)
+            .filter(|f| !f.as_os_str().is_empty())
+            .map(|f| f.join(file)),
+    );
     places
 }
 
 /// What is wrong beside a quoted string of a scene file.
 fn in_file(path: &Path, text: &str, near: &str, message: String) -> SceneError {
     let (line, column) = position_of(text, near);
-    SceneError::SceneFile { path: path.into(), line, column, message: excerpt(&message, MAX_MESSAGE) }
+    SceneError::SceneFile {
+        path: path.into(),
+        line,
+        column,
+        message: excerpt(&message, MAX_MESSAGE),
+    }
 }
 
 /// Line and column of a quoted string, both from 1; (1, 1) when it is not there as it is.
@@ -167,33 +220,49 @@ fn position_of(text: &str, string: &str) -> (usize, usize) {
         return (1, 1);
     };
     let before = &text[..offset];
-    let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+    let column = before
+        .rsplit('\n')
+        .next()
+        .unwrap_or_default()
+        .chars()
+        .count()
+        + 1;
     (before.matches('\n').count() + 1, column)
 }
 
 fn parse(text: &str, path: &Path) -> Result<SceneFile, SceneError> {
-    let options =
-        ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_VARIANT_NEWTYPES);
-    options.from_str(text).map_err(|error| SceneError::SceneFile {
-        path: path.into(),
-        line: error.span.start.line,
-        column: error.span.start.col,
-        message: excerpt(&describe(&error.code), MAX_MESSAGE),
-    })
+    let options = ron::Options::default()
+        .with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_VARIANT_NEWTYPES);
+    options
+        .from_str(text)
+        .map_err(|error| SceneError::SceneFile {
+            path: path.into(),
+            line: error.span.start.line,
+            column: error.span.start.col,
+            message: excerpt(&describe(&error.code), MAX_MESSAGE),
+        })
 }
 
 /// The parser's message, with the nearest known name for an unknown one.
 fn describe(error: &ron::Error) -> String {
     let (kind, found, expected) = match error {
-        ron::Error::NoSuchStructField { found, expected, .. } => ("field", found, *expected),
-        ron::Error::NoSuchEnumVariant { found, expected, .. } => ("kind", found, *expected),
+        ron::Error::NoSuchStructField {
+            found, expected, ..
+        } => ("field", found, *expected),
+        ron::Error::NoSuchEnumVariant {
+            found, expected, ..
+        } => ("kind", found, *expected),
         ron::Error::ExceededRecursionLimit => return TOO_DEEP.into(),
         other => return other.to_string(),
     };
-    let score = |known: &&&str| strsim::damerau_levenshtein(&known.to_lowercase(), &found.to_lowercase());
+    let score =
+        |known: &&&str| strsim::damerau_levenshtein(&known.to_lowercase(), &found.to_lowercase());
     let hint = match expected.iter().min_by_key(score) {
         Some(nearest) if score(&nearest) <= 3 => format!("did you mean '{nearest}'? "),
         _ => String::new(),
     };
-    format!("unknown {kind} '{found}': {hint}Known here: {}", expected.join(", "))
+    format!(
+        "unknown {kind} '{found}': {hint}Known here: {}",
+        expected.join(", ")
+    )
 }

@@ -118,11 +118,15 @@ impl Places {
     fn list(&self) -> Result<Vec<(f32, Vec3)>, String> {
         let count = match self {
             Places::At(list) => list.len() as u64,
-            Places::Grid { steps, .. } => steps.iter().fold(1u64, |n, s| n.saturating_mul(s.1.into())),
+            Places::Grid { steps, .. } => {
+                steps.iter().fold(1u64, |n, s| n.saturating_mul(s.1.into()))
+            }
             Places::Line { count, .. } | Places::Circle { count, .. } => u64::from(*count),
         };
         if count > u64::from(MAX_PLACES) {
-            return Err(format!("a repetition has {count} places, and {MAX_PLACES} are the most"));
+            return Err(format!(
+                "a repetition has {count} places, and {MAX_PLACES} are the most"
+            ));
         }
         let place = |i: u32| match self {
             Places::At(list) => (0.0, list[i as usize]),
@@ -133,12 +137,24 @@ impl Places {
                     numbers.push((left % count) as f32);
                     left /= count;
                 }
-                (0.0, steps.iter().zip(numbers.iter().rev()).fold(*from, |p, (step, n)| p + step.0 * *n))
+                (
+                    0.0,
+                    steps
+                        .iter()
+                        .zip(numbers.iter().rev())
+                        .fold(*from, |p, (step, n)| p + step.0 * *n),
+                )
             }
-            Places::Line { from, to, count } => (0.0, *from + (*to - *from) * i as f32 / (count - 1).max(1) as f32),
+            Places::Line { from, to, count } => (
+                0.0,
+                *from + (*to - *from) * i as f32 / (count - 1).max(1) as f32,
+            ),
             Places::Circle { radius, count } => {
                 let turn = i as f32 / *count as f32 * TAU;
-                (turn, Mat4::from_rotation_y(turn).transform_point3(Vec3::X * *radius))
+                (
+                    turn,
+                    Mat4::from_rotation_y(turn).transform_point3(Vec3::X * *radius),
+                )
             }
         };
         Ok((0..count as u32).map(place).collect())
@@ -168,11 +184,18 @@ pub(super) struct InstanceEntry {
 /// # Errors
 /// What is wrong, and a name in the file near to it.
 pub(super) fn build(file: &SceneFile, progress: Progress) -> Result<Scene, Problem> {
-    let wrong = |near: &str, message: String| Problem { near: near.into(), message };
+    let wrong = |near: &str, message: String| Problem {
+        near: near.into(),
+        message,
+    };
     let mut scene = Scene::default();
     for (name, material) in &file.materials {
-        check_material(material, file.textures.len()).map_err(|m| wrong(name, format!("material '{name}': {m}")))?;
-        scene.materials.push(Material { name: name.clone(), ..material.clone() });
+        check_material(material, file.textures.len())
+            .map_err(|m| wrong(name, format!("material '{name}': {m}")))?;
+        scene.materials.push(Material {
+            name: name.clone(),
+            ..material.clone()
+        });
     }
     if file.textures.len() > MAX_TEXTURES {
         return Err(wrong("", format!("more than {MAX_TEXTURES} textures")));
@@ -180,7 +203,11 @@ pub(super) fn build(file: &SceneFile, progress: Progress) -> Result<Scene, Probl
     scene.textures = file.textures.iter().map(patterns::Picture::draw).collect();
     let mut raw = Vec::new();
     let mut room = MAX_VERTICES;
-    let mut walk = Walk { groups: &file.groups, left: MAX_PARTS, progress };
+    let mut walk = Walk {
+        groups: &file.groups,
+        left: MAX_PARTS,
+        progress,
+    };
     for (name, parts) in &file.meshes {
         let mut mesh = MeshBuilder::new(name, &file.materials, room);
         walk.parts(parts, &mut mesh, None, Mat4::IDENTITY, Vec3::ZERO, 0);
@@ -189,12 +216,24 @@ pub(super) fn build(file: &SceneFile, progress: Progress) -> Result<Scene, Probl
             false => p,
         })?;
         room -= mesh.vertices.len() as u64;
-        raw.push(RawMesh { mesh, sources: Vec::new(), has_normals: true, has_tangents: false });
+        raw.push(RawMesh {
+            mesh,
+            sources: Vec::new(),
+            has_normals: true,
+            has_tangents: false,
+        });
     }
     let dropped;
-    (scene.meshes, dropped) = prepare_all(raw, &scene.materials, progress).map_err(|m| wrong("", m))?;
+    (scene.meshes, dropped) =
+        prepare_all(raw, &scene.materials, progress).map_err(|m| wrong("", m))?;
     // At the poles of what turns about an axis there are triangles without area.
-    scene.warnings.extend(Dropped { no_area: 0, ..dropped }.warning("meshes of shapes"));
+    scene.warnings.extend(
+        Dropped {
+            no_area: 0,
+            ..dropped
+        }
+        .warning("meshes of shapes"),
+    );
     place_all(file, &mut scene)?;
     Ok(scene)
 }
@@ -202,19 +241,33 @@ pub(super) fn build(file: &SceneFile, progress: Progress) -> Result<Scene, Probl
 fn place_all(file: &SceneFile, scene: &mut Scene) -> Result<(), Problem> {
     // Those that no entry places stand where they were built.
     let mut entries: Vec<(u32, &str)> = (0..).zip(file.meshes.keys().map(String::as_str)).collect();
-    entries.retain(|(_, name)| !file.instances.iter().any(|e| e.meshes.iter().any(|m| m == name)));
-    scene.instances.extend(entries.into_iter().map(|(mesh, name)| Instance {
-        name: name.into(),
-        mesh,
-        transform: Mat4::IDENTITY,
-        mover: None,
-    }));
+    entries.retain(|(_, name)| {
+        !file
+            .instances
+            .iter()
+            .any(|e| e.meshes.iter().any(|m| m == name))
+    });
+    scene
+        .instances
+        .extend(entries.into_iter().map(|(mesh, name)| Instance {
+            name: name.into(),
+            mesh,
+            transform: Mat4::IDENTITY,
+            mover: None,
+        }));
     for entry in &file.instances {
         let near = entry.meshes.first().map_or("", String::as_str);
-        let wrong = |message: String| Problem { near: near.into(), message };
+        let wrong = |message: String| Problem {
+            near: near.into(),
+            message,
+        };
         let transform = entry.transform.0;
         let mover = entry.animation.clone().map(|moves| {
-            scene.movers.push(Mover { parent: None, placed: Mat4::IDENTITY, track: moves.0 });
+            scene.movers.push(Mover {
+                parent: None,
+                placed: Mat4::IDENTITY,
+                track: moves.0,
+            });
             scene.movers.len() as u32 - 1
         });
         let places = entry.at.clone().unwrap_or_default().list().map_err(wrong)?;
@@ -226,10 +279,26 @@ fn place_all(file: &SceneFile, scene: &mut Scene) -> Result<(), Problem> {
                 let no_mesh = || wrong(format!("no mesh '{name}' is in this file's meshes"));
                 let mesh = file.meshes.get_index_of(name).ok_or_else(no_mesh)? as u32;
                 let shown = entry.name.as_ref().unwrap_or(name);
-                let name = if entry.at.is_some() { format!("{shown} {}", i + 1) } else { shown.clone() };
-                let moved = if turn == 0.0 { transform } else { transform * Mat4::from_rotation_y(turn) };
-                let transform = Mat4 { w_axis: (transform.transform_point3(at)).extend(1.0), ..moved };
-                scene.instances.push(Instance { name, mesh, transform, mover });
+                let name = if entry.at.is_some() {
+                    format!("{shown} {}", i + 1)
+                } else {
+                    shown.clone()
+                };
+                let moved = if turn == 0.0 {
+                    transform
+                } else {
+                    transform * Mat4::from_rotation_y(turn)
+                };
+                let transform = Mat4 {
+                    w_axis: (transform.transform_point3(at)).extend(1.0),
+                    ..moved
+                };
+                scene.instances.push(Instance {
+                    name,
+                    mesh,
+                    transform,
+                    mover,
+                });
             }
         }
     }
@@ -271,17 +340,23 @@ impl Walk<'_> {
                     Some(group) => self.parts(group, mesh, inside, frame, at, depth + 1),
                     None => mesh.fail(name, format!("no group '{name}' is in this file's groups")),
                 },
-                (Part::Repeat(repeat), inside) => self.repeat(repeat, mesh, inside, frame, at, depth + 1),
+                (Part::Repeat(repeat), inside) => {
+                    self.repeat(repeat, mesh, inside, frame, at, depth + 1)
+                }
                 (Part::Box(shape), Some(solid)) => {
                     solid.fill(shape.low + at, shape.high + at, mesh.paint(&shape.material))
                 }
                 (Part::Hollow(shape), Some(solid)) => shape.carve(solid, mesh, at),
                 (_, Some(_)) => mesh.fail("", "a solid is of boxes and hollows alone".into()),
-                (Part::Hollow(_), None) => mesh.fail("", "a hollow is a part of a solid alone".into()),
+                (Part::Hollow(_), None) => {
+                    mesh.fail("", "a hollow is a part of a solid alone".into())
+                }
                 (Part::Solid(parts), None) => {
                     let mut solid = Solid::default();
                     self.parts(parts, mesh, Some(&mut solid), frame, at, depth + 1);
-                    self.left = self.left.saturating_sub((solid.build(mesh) / SOLID_WORK) as u32);
+                    self.left = self
+                        .left
+                        .saturating_sub((solid.build(mesh) / SOLID_WORK) as u32);
                 }
                 (Part::Seed(seed), _) => mesh.random = Random(*seed),
                 (Part::Box(shape), _) => shape.build(mesh, at),
@@ -331,15 +406,29 @@ impl Walk<'_> {
             Vec::new()
         });
         self.left = self.left.saturating_sub(places.len() as u32);
-        let still = repeat.rotate_deg.is_none() && repeat.quarters.is_none() && repeat.scale.is_none();
+        let still =
+            repeat.rotate_deg.is_none() && repeat.quarters.is_none() && repeat.scale.is_none();
         if solid.is_some() && !(still && places.iter().all(|(turn, _)| *turn == 0.0)) {
             return mesh.fail("", "what is in a solid cannot be turned or scaled".into());
         }
-        let [x, y, z] = repeat.rotate_deg.unwrap_or_default().to_array().map(f32::to_radians);
+        let [x, y, z] = repeat
+            .rotate_deg
+            .unwrap_or_default()
+            .to_array()
+            .map(f32::to_radians);
         let turned = Mat4::from_rotation_z(z) * Mat4::from_rotation_y(y) * Mat4::from_rotation_x(x);
-        let (side, back) = [(Vec3::X, Vec3::Z), (-Vec3::Z, Vec3::X), (-Vec3::X, -Vec3::Z), (Vec3::Z, -Vec3::X)]
-            [usize::from(repeat.quarters.unwrap_or_default() % 4)];
-        let quarters = Mat4::from_cols(side.extend(0.0), Vec3::Y.extend(0.0), back.extend(0.0), glam::Vec4::W);
+        let (side, back) = [
+            (Vec3::X, Vec3::Z),
+            (-Vec3::Z, Vec3::X),
+            (-Vec3::X, -Vec3::Z),
+            (Vec3::Z, -Vec3::X),
+        ][usize::from(repeat.quarters.unwrap_or_default() % 4)];
+        let quarters = Mat4::from_cols(
+            side.extend(0.0),
+            Vec3::Y.extend(0.0),
+            back.extend(0.0),
+            glam::Vec4::W,
+        );
         let own = turned * quarters * Mat4::from_scale(repeat.scale.unwrap_or(Vec3::ONE));
         let number = mesh.number;
         for (i, (turn, place)) in (0u32..).zip(places) {
@@ -349,7 +438,14 @@ impl Walk<'_> {
                 self.parts(&repeat.parts, mesh, inside, frame, at + place, depth);
             } else {
                 let moved = Mat4::from_translation(at + place) * Mat4::from_rotation_y(turn);
-                self.parts(&repeat.parts, mesh, inside, frame * (moved * own), Vec3::ZERO, depth);
+                self.parts(
+                    &repeat.parts,
+                    mesh,
+                    inside,
+                    frame * (moved * own),
+                    Vec3::ZERO,
+                    depth,
+                );
             }
         }
         mesh.number = number;
@@ -357,14 +453,28 @@ impl Walk<'_> {
 }
 
 fn check_material(material: &Material, textures: usize) -> Result<(), String> {
-    let colors = [material.base_color.truncate(), material.specular_color, material.emission];
-    let shares =
-        [material.metallic, material.roughness, material.specular, material.alpha_cutoff, material.base_color.w];
+    let colors = [
+        material.base_color.truncate(),
+        material.specular_color,
+        material.emission,
+    ];
+    let shares = [
+        material.metallic,
+        material.roughness,
+        material.specular,
+        material.alpha_cutoff,
+        material.base_color.w,
+    ];
     let share = |v: &f32| (0.0..=1.0).contains(v);
     if !shares.iter().all(share) || !colors[0].to_array().iter().all(share) {
-        return Err("base_color, metallic, roughness, specular and alpha_cutoff are from 0 to 1".into());
+        return Err(
+            "base_color, metallic, roughness, specular and alpha_cutoff are from 0 to 1".into(),
+        );
     }
-    if !colors.iter().all(|c| c.min_element() >= 0.0 && c.max_element() <= 1e12) || !(0.0..=1e6).contains(&material.ior)
+    if !colors
+        .iter()
+        .all(|c| c.min_element() >= 0.0 && c.max_element() <= 1e12)
+        || !(0.0..=1e6).contains(&material.ior)
     {
         return Err("colours, emission and ior must be finite and 0 or more".into());
     }
@@ -378,7 +488,9 @@ fn check_material(material: &Material, textures: usize) -> Result<(), String> {
         material.emission_texture,
     ];
     match maps.into_iter().flatten().find(|i| *i as usize >= textures) {
-        Some(i) => Err(format!("texture {i} of {textures} does not exist (the first is 0)")),
+        Some(i) => Err(format!(
+            "texture {i} of {textures} does not exist (the first is 0)"
+        )),
         None => Ok(()),
     }
 }

@@ -31,7 +31,11 @@ impl Tracks {
     pub fn of(&self, node: &Node) -> Option<Arc<Track>> {
         let track = self.nodes.get(&node.index())?.clone();
         let (translation, rotation, scale) = node.transform().decomposed();
-        let rest = Rest { translation: translation.into(), rotation: Quat::from_array(rotation), scale: scale.into() };
+        let rest = Rest {
+            translation: translation.into(),
+            rotation: Quat::from_array(rotation),
+            scale: scale.into(),
+        };
         Some(Arc::new(Track { rest, ..track }))
     }
 
@@ -50,7 +54,10 @@ pub(super) fn tracks(
     warnings: &mut Warnings,
 ) -> Result<Tracks, String> {
     let mut tracks = Tracks::default();
-    let name = |a: &Animation| a.name().map_or_else(|| format!("animation {}", a.index()), str::to_owned);
+    let name = |a: &Animation| {
+        a.name()
+            .map_or_else(|| format!("animation {}", a.index()), str::to_owned)
+    };
     let names: Vec<String> = document.animations().map(|a| name(&a)).collect();
     let chosen = clip.map(|clip| clips::number(clip, &names)).transpose()?;
     let mut animations: Vec<Animation> = document.animations().collect();
@@ -75,7 +82,11 @@ fn period(animation: &Animation, buffers: &Buffers) -> Result<Option<f32>, Strin
     let mut last = 0f32;
     for sampler in animation.samplers() {
         let times = accessors::floats::<1>(&sampler.input(), buffers)?;
-        last = times.iter().map(|[t]| *t).filter(|t| t.is_finite()).fold(last, f32::max);
+        last = times
+            .iter()
+            .map(|[t]| *t)
+            .filter(|t| t.is_finite())
+            .fold(last, f32::max);
     }
     Ok((last > 0.0).then_some(last))
 }
@@ -92,33 +103,54 @@ impl Tracks {
         }
     }
 
-    fn add(&mut self, channel: &Channel, period: Option<f32>, buffers: &Buffers) -> Result<(), String> {
+    fn add(
+        &mut self,
+        channel: &Channel,
+        period: Option<f32>,
+        buffers: &Buffers,
+    ) -> Result<(), String> {
         let (node, sampler) = (channel.target().node(), channel.sampler());
         let name = format!("the animation of node {}", node.index());
-        let times: Vec<f32> = accessors::floats::<1>(&sampler.input(), buffers)?.into_iter().map(|[t]| t).collect();
+        let times: Vec<f32> = accessors::floats::<1>(&sampler.input(), buffers)?
+            .into_iter()
+            .map(|[t]| t)
+            .collect();
         // Weights have a list of times for each target.
-        let targets = node.mesh().and_then(|m| m.primitives().map(|p| p.morph_targets().len()).max()).unwrap_or(0);
+        let targets = node
+            .mesh()
+            .and_then(|m| m.primitives().map(|p| p.morph_targets().len()).max())
+            .unwrap_or(0);
         let is_weights = channel.target().property() == Property::MorphTargetWeights;
         let lists = if is_weights { targets } else { 1 };
         self.keys = self.keys.saturating_add(times.len().saturating_mul(lists));
         if self.keys > MAX_KEYS {
             return Err(format!("its animations have more than {MAX_KEYS} keys"));
         }
-        let keys = Keys { name, times, interpolation: sampler.interpolation() };
+        let keys = Keys {
+            name,
+            times,
+            interpolation: sampler.interpolation(),
+        };
         let output = sampler.output();
         if is_weights {
-            let values = accessors::floats::<1>(&output, buffers)?.into_iter().map(|[w]| w).collect();
-            self.weights.insert(node.index(), (keys.weights(values, targets)?, period));
+            let values = accessors::floats::<1>(&output, buffers)?
+                .into_iter()
+                .map(|[w]| w)
+                .collect();
+            self.weights
+                .insert(node.index(), (keys.weights(values, targets)?, period));
             return Ok(());
         }
         let track = self.nodes.entry(node.index()).or_default();
         track.period = period;
         match channel.target().property() {
             Property::Translation => {
-                track.translation = Some(keys.curve(accessors::floats::<3>(&output, buffers)?, Vec3::from_array)?);
+                track.translation =
+                    Some(keys.curve(accessors::floats::<3>(&output, buffers)?, Vec3::from_array)?);
             }
             Property::Scale => {
-                track.scale = Some(keys.curve(accessors::floats::<3>(&output, buffers)?, Vec3::from_array)?);
+                track.scale =
+                    Some(keys.curve(accessors::floats::<3>(&output, buffers)?, Vec3::from_array)?);
             }
             _ => track.rotation = Some(keys.rotation(accessors::floats::<4>(&output, buffers)?)?),
         }
@@ -133,8 +165,16 @@ struct Keys {
 }
 
 impl Keys {
-    fn curve<T: Value, N>(self, values: Vec<N>, convert: impl Fn(N) -> T) -> Result<Curve<T>, String> {
-        let Keys { name, times, interpolation } = self;
+    fn curve<T: Value, N>(
+        self,
+        values: Vec<N>,
+        convert: impl Fn(N) -> T,
+    ) -> Result<Curve<T>, String> {
+        let Keys {
+            name,
+            times,
+            interpolation,
+        } = self;
         let interpolation = match interpolation {
             animation::Interpolation::Step => Interpolation::Step,
             animation::Interpolation::Linear => Interpolation::Linear,
@@ -142,22 +182,40 @@ impl Keys {
         };
         let counts = format!("{} values for {} times", values.len(), times.len());
         let values = values.into_iter().map(convert).collect();
-        Curve::new(times, values, interpolation)
-            .ok_or_else(|| format!("{name} has {counts}, times out of order, or numbers that are not finite"))
+        Curve::new(times, values, interpolation).ok_or_else(|| {
+            format!("{name} has {counts}, times out of order, or numbers that are not finite")
+        })
     }
 
     fn rotation(self, values: Vec<[f32; 4]>) -> Result<Curve<Quat>, String> {
         // Tangents of cubic curves are no rotations.
         let cubic = self.interpolation == animation::Interpolation::CubicSpline;
-        self.curve(values, |q| if cubic { Quat::from_array(q) } else { unit(q) })
+        self.curve(
+            values,
+            |q| if cubic { Quat::from_array(q) } else { unit(q) },
+        )
     }
 
     /// One curve a target, of values key by key.
     fn weights(self, values: Vec<f32>, targets: usize) -> Result<Vec<Curve<f32>>, String> {
         let of_target = |target: usize| {
-            let values: Vec<f32> = values.iter().skip(target).step_by(targets).copied().collect();
-            let Keys { name, times, interpolation } = &self;
-            Keys { name: name.clone(), times: times.clone(), interpolation: *interpolation }.curve(values, |w| w)
+            let values: Vec<f32> = values
+                .iter()
+                .skip(target)
+                .step_by(targets)
+                .copied()
+                .collect();
+            let Keys {
+                name,
+                times,
+                interpolation,
+            } = &self;
+            Keys {
+                name: name.clone(),
+                times: times.clone(),
+                interpolation: *interpolation,
+            }
+            .curve(values, |w| w)
         };
         (0..targets).map(of_target).collect()
     }
@@ -169,5 +227,7 @@ fn unit(q: [f32; 4]) -> Quat {
     if !q.is_finite() {
         return Quat::from_vec4(q);
     }
-    (q / q.abs().max_element()).try_normalize().map_or(Quat::IDENTITY, Quat::from_vec4)
+    (q / q.abs().max_element())
+        .try_normalize()
+        .map_or(Quat::IDENTITY, Quat::from_vec4)
 }

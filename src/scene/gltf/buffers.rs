@@ -44,49 +44,75 @@ impl Buffers {
         let one = |buffer: buffer::Buffer| {
             let i = buffer.index();
             if meshopt::is_fallback(&buffer) {
-                return Err(format!("buffer {i} only stands for compressed views, and something else is in it"));
+                return Err(format!(
+                    "buffer {i} only stands for compressed views, and something else is in it"
+                ));
             }
             let bytes = match buffer.source() {
-                buffer::Source::Bin => blob.take().ok_or(format!("buffer {i} has neither a uri nor a binary chunk"))?,
+                buffer::Source::Bin => blob
+                    .take()
+                    .ok_or(format!("buffer {i} has neither a uri nor a binary chunk"))?,
                 buffer::Source::Uri(uri) => match resolve(uri, folder)? {
                     Target::Data(bytes) => bytes,
                     Target::File(path) => {
                         progress.reads(&path);
-                        read_input(&path, MAX_BYTES)
-                            .map_err(|error| format!("buffer {}: {error}. Copy it beside the model", path.display()))?
+                        read_input(&path, MAX_BYTES).map_err(|error| {
+                            format!(
+                                "buffer {}: {error}. Copy it beside the model",
+                                path.display()
+                            )
+                        })?
                     }
                 },
             };
             if bytes.len() < buffer.length() {
                 let (has, needs) = (bytes.len(), buffer.length());
-                return Err(format!("buffer {i} has {has} bytes of {needs}: it is cut short; copy or export it again"));
+                return Err(format!(
+                    "buffer {i} has {has} bytes of {needs}: it is cut short; copy or export it again"
+                ));
             }
             Ok(bytes)
         };
         let bytes = document.buffers().map(one).collect();
-        let mut buffers = Buffers { bytes, decoded: HashMap::new(), unreadable };
+        let mut buffers = Buffers {
+            bytes,
+            decoded: HashMap::new(),
+            unreadable,
+        };
         buffers.decoded = decode(document, &buffers);
         buffers
     }
 
     /// Bytes of all buffers and of all that is decoded.
     pub fn len(&self) -> usize {
-        self.bytes.iter().chain(self.decoded.values()).flatten().map(Vec::len).sum()
+        self.bytes
+            .iter()
+            .chain(self.decoded.values())
+            .flatten()
+            .map(Vec::len)
+            .sum()
     }
 }
 
 /// Decodes the compressed views. One that is damaged is a mistake only where it is used.
 fn decode(document: &Document, buffers: &Buffers) -> HashMap<usize, Result<Vec<u8>, String>> {
-    let compressed: Vec<_> =
-        document.views().filter_map(|v| Compressed::of(&v).map(|c| (v.index(), v.length(), c))).collect();
-    let mut room = DECODED.saturating_add(buffers.len().saturating_mul(DECODED_PER_BYTE)).min(MAX_BYTES as usize);
+    let compressed: Vec<_> = document
+        .views()
+        .filter_map(|v| Compressed::of(&v).map(|c| (v.index(), v.length(), c)))
+        .collect();
+    let mut room = DECODED
+        .saturating_add(buffers.len().saturating_mul(DECODED_PER_BYTE))
+        .min(MAX_BYTES as usize);
     // Views may share their compressed bytes; a small file must not fill the memory.
     let mut fits = |size: usize| {
         let left = room.checked_sub(size);
         room = left.unwrap_or(room);
         left.is_some()
     };
-    let fitting: Vec<bool> = compressed.iter().map(|(.., c)| c.as_ref().is_ok_and(|c| fits(c.size()))).collect();
+    let fitting: Vec<bool> = compressed
+        .iter()
+        .map(|(.., c)| c.as_ref().is_ok_and(|c| fits(c.size())))
+        .collect();
     let one = |((index, length, compressed), fits): (_, bool)| {
         let decode = |compressed: Compressed| {
             if !fits {
@@ -95,10 +121,19 @@ fn decode(document: &Document, buffers: &Buffers) -> HashMap<usize, Result<Vec<u
             let (from, count) = (compressed.offset, compressed.length);
             let bytes = compressed.decode(range(buffers, compressed.buffer, from, count)?)?;
             let (has, needs) = (bytes.len(), length);
-            if has < needs { Err(format!("it decodes to {has} bytes of {needs}")) } else { Ok(bytes) }
+            if has < needs {
+                Err(format!("it decodes to {has} bytes of {needs}"))
+            } else {
+                Ok(bytes)
+            }
         };
         let decoded: Result<Compressed, String> = compressed;
-        (index, decoded.and_then(|c| decode(c).map_err(|problem| format!("buffer view {index}: {problem}"))))
+        (
+            index,
+            decoded.and_then(|c| {
+                decode(c).map_err(|problem| format!("buffer view {index}: {problem}"))
+            }),
+        )
     };
     compressed.into_par_iter().zip(fitting).map(one).collect()
 }
@@ -119,16 +154,28 @@ fn range(buffers: &Buffers, buffer: usize, offset: usize, length: usize) -> Resu
         None => &[],
     };
     let end = offset.checked_add(length);
-    end.and_then(|end| bytes.get(offset..end)).ok_or_else(|| "it reaches past the end of its buffer".into())
+    end.and_then(|end| bytes.get(offset..end))
+        .ok_or_else(|| "it reaches past the end of its buffer".into())
 }
 
 /// Where an image's bytes are.
-pub(super) fn image(image: &::gltf::Image, document: &Document, buffers: &Buffers, folder: &Path) -> Source {
+pub(super) fn image(
+    image: &::gltf::Image,
+    document: &Document,
+    buffers: &Buffers,
+    folder: &Path,
+) -> Source {
     // By its JSON: the crate's own accessor requires a media type that files leave out.
     let json = &document.as_json().images[image.index()];
-    let name = image.name().map_or_else(|| format!("image {}", image.index()), str::to_owned);
+    let name = image
+        .name()
+        .map_or_else(|| format!("image {}", image.index()), str::to_owned);
     if let Some(index) = &json.buffer_view {
-        return match document.views().nth(index.value()).map(|v| view(buffers, &v)) {
+        return match document
+            .views()
+            .nth(index.value())
+            .map(|v| view(buffers, &v))
+        {
             Some(Ok(bytes)) => Source::Bytes(name, Arc::new(bytes.to_vec())),
             Some(Err(problem)) => Source::Missing(name, problem),
             None => Source::Missing(name, "its buffer view does not exist".into()),
@@ -157,7 +204,9 @@ fn resolve(uri: &str, folder: &Path) -> Result<Target, String> {
     }
     let path = uri.strip_prefix("file://").unwrap_or(uri);
     if path.contains("://") {
-        return Err(format!("'{uri}' is not a local file; download it and export the model again"));
+        return Err(format!(
+            "'{uri}' is not a local file; download it and export the model again"
+        ));
     }
     let decoded = String::from_utf8(percent(path)).map_err(|_| format!("'{uri}' is not UTF-8"))?;
     Ok(Target::File(folder.join(decoded)))
@@ -169,7 +218,9 @@ fn percent(text: &str) -> Vec<u8> {
     let mut rest = text.as_bytes();
     while let Some((&first, after)) = rest.split_first() {
         let digits = after.get(..2).and_then(|d| std::str::from_utf8(d).ok());
-        let value = digits.filter(|_| first == b'%').and_then(|d| u8::from_str_radix(d, 16).ok());
+        let value = digits
+            .filter(|_| first == b'%')
+            .and_then(|d| u8::from_str_radix(d, 16).ok());
         bytes.push(value.unwrap_or(first));
         rest = if value.is_some() { &after[2..] } else { after };
     }
@@ -183,6 +234,12 @@ fn base64(text: &str) -> Result<Vec<u8>, String> {
         b'_' => b'/',
         other => other,
     };
-    let digits: Vec<u8> = text.bytes().filter(|c| !c.is_ascii_whitespace() && *c != b'=').map(standard).collect();
-    STANDARD_NO_PAD.decode(digits).map_err(|error| format!("a data URI is not base64: {error}"))
+    let digits: Vec<u8> = text
+        .bytes()
+        .filter(|c| !c.is_ascii_whitespace() && *c != b'=')
+        .map(standard)
+        .collect();
+    STANDARD_NO_PAD
+        .decode(digits)
+        .map_err(|error| format!("a data URI is not base64: {error}"))
 }

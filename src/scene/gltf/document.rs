@@ -46,13 +46,22 @@ fn checked(mut value: Value, blob: Option<Vec<u8>>) -> Result<Checks, String> {
     let root: Root = serde_json::from_value(value).map_err(|e| e.to_string())?;
     check(&root)?;
     let unreadable = validate(&root)?;
-    Ok(Checks { document: Document::from_json_without_validation(root), blob, unreadable, warnings })
+    Ok(Checks {
+        document: Document::from_json_without_validation(root),
+        blob,
+        unreadable,
+        warnings,
+    })
 }
 
 fn check_version(value: &Value) -> Result<(), String> {
-    let asset = value.get("asset").ok_or("it has no `asset`, which every glTF file has")?;
+    let asset = value
+        .get("asset")
+        .ok_or("it has no `asset`, which every glTF file has")?;
     let version = |key: &str| asset.get(key).and_then(Value::as_str);
-    let needed = version("minVersion").or(version("version")).unwrap_or_default();
+    let needed = version("minVersion")
+        .or(version("version"))
+        .unwrap_or_default();
     match needed.split_once('.').map_or(needed, |v| v.0) {
         "2" if version("minVersion").is_none_or(|v| v == "2.0") => Ok(()),
         _ => Err(format!("it is of version '{needed}', and 2.0 is read")),
@@ -62,32 +71,61 @@ fn check_version(value: &Value) -> Result<(), String> {
 /// Writes out what the format leaves to defaults and the crate asks for.
 fn write_out(value: &mut Value, warnings: &mut Warnings) {
     whole_numbers(value);
-    let Some(root) = value.as_object_mut() else { return };
+    let Some(root) = value.as_object_mut() else {
+        return;
+    };
     root.remove("extensionsRequired");
-    let scenes = root.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten();
+    let scenes = root
+        .get_mut("scenes")
+        .and_then(Value::as_array_mut)
+        .into_iter()
+        .flatten();
     for scene in scenes.filter_map(Value::as_object_mut) {
         scene.entry("nodes").or_insert(json!([]));
     }
-    let animations = root.get_mut("animations").and_then(Value::as_array_mut).into_iter().flatten();
+    let animations = root
+        .get_mut("animations")
+        .and_then(Value::as_array_mut)
+        .into_iter()
+        .flatten();
     for (i, animation) in animations.enumerate() {
-        let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) else { continue };
+        let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) else {
+            continue;
+        };
         let before = channels.len();
         channels.retain(|channel| channel.get("target").is_none_or(moves_a_node));
         if channels.len() < before {
             for _ in channels.len()..before {
-                warnings.add("channels of animations that move no node are left out", format!("animation {i}"));
+                warnings.add(
+                    "channels of animations that move no node are left out",
+                    format!("animation {i}"),
+                );
             }
         }
     }
-    let mut images = root.get("images").and_then(Value::as_array).map_or(0, Vec::len);
+    let mut images = root
+        .get("images")
+        .and_then(Value::as_array)
+        .map_or(0, Vec::len);
     let known = images as u64;
     let mut absent = Vec::new();
-    let textures = root.get_mut("textures").and_then(Value::as_array_mut).into_iter().flatten();
+    let textures = root
+        .get_mut("textures")
+        .and_then(Value::as_array_mut)
+        .into_iter()
+        .flatten();
     for (i, texture) in textures.enumerate() {
         let exists = |source: &Value| source.as_u64().is_some_and(|source| source < known);
-        let Some(texture) = texture.as_object_mut() else { continue };
+        let Some(texture) = texture.as_object_mut() else {
+            continue;
+        };
         let extensions = texture.get("extensions");
-        let other = |name: &str| extensions.and_then(|e| e.get(name)?.get("source")).filter(|s| exists(s)).cloned();
+        let other = |name: &str| {
+            extensions
+                .and_then(|e| e.get(name)?.get("source"))
+                .filter(|s| exists(s))
+                .cloned()
+        };
         let own = || texture.get("source").filter(|s| exists(s)).cloned();
         let others = || other("MSFT_texture_dds").or_else(|| other("EXT_texture_webp"));
         let source = other("KHR_texture_basisu").or_else(own).or_else(others).unwrap_or_else(|| {
@@ -106,7 +144,10 @@ fn write_out(value: &mut Value, warnings: &mut Warnings) {
 
 /// Without a node, an extension says what is moved.
 fn moves_a_node(target: &Value) -> bool {
-    let path = target.get("path").and_then(Value::as_str).unwrap_or_default();
+    let path = target
+        .get("path")
+        .and_then(Value::as_str)
+        .unwrap_or_default();
     target.get("node").is_some() && ["translation", "rotation", "scale", "weights"].contains(&path)
 }
 
@@ -114,12 +155,15 @@ fn moves_a_node(target: &Value) -> bool {
 fn whole_numbers(value: &mut Value) {
     match value {
         Value::Array(list) => list.iter_mut().for_each(whole_numbers),
-        Value::Object(fields) => {
-            fields.iter_mut().filter(|(key, _)| *key != "extras").for_each(|(_, v)| whole_numbers(v))
-        }
+        Value::Object(fields) => fields
+            .iter_mut()
+            .filter(|(key, _)| *key != "extras")
+            .for_each(|(_, v)| whole_numbers(v)),
         Value::Number(number) if number.is_f64() => {
             let float = number.as_f64().unwrap_or(0.5);
-            let whole = float.fract() == 0.0 && float.abs() < 1e15 && !(float == 0.0 && float.is_sign_negative());
+            let whole = float.fract() == 0.0
+                && float.abs() < 1e15
+                && !(float == 0.0 && float.is_sign_negative());
             if whole {
                 *value = json!(float as i64);
             }
@@ -135,7 +179,9 @@ fn validate(root: &Root) -> Result<HashSet<usize>, String> {
     root.validate(root, Path::new, &mut |path, error| {
         let path = path();
         let path = path.as_str();
-        let accessor = path.strip_prefix("accessors[").and_then(|rest| rest.split_once("]."));
+        let accessor = path
+            .strip_prefix("accessors[")
+            .and_then(|rest| rest.split_once("]."));
         match (error, accessor) {
             (Error::Missing, Some((_, "bufferView"))) => {}
             (Error::Missing, _) if path.ends_with("attributes[\"POSITION\"]") => {}
@@ -151,7 +197,11 @@ fn validate(root: &Root) -> Result<HashSet<usize>, String> {
         0 => Ok(unreadable),
         n => {
             wrong.truncate(4);
-            let more = if n > 4 { format!(" and {} more mistakes", n - 4) } else { String::new() };
+            let more = if n > 4 {
+                format!(" and {} more mistakes", n - 4)
+            } else {
+                String::new()
+            };
             Err(format!("{}{more}", wrong.join(", ")))
         }
     }
@@ -162,14 +212,27 @@ fn check(root: &Root) -> Result<(), String> {
     for (i, mesh) in root.meshes.iter().enumerate() {
         for primitive in &mesh.primitives {
             let targets = primitive.targets.iter().flatten();
-            let moved = targets.flat_map(|t| [t.positions, t.normals, t.tangents].into_iter().flatten());
-            let mut used = primitive.attributes.values().copied().chain(primitive.indices).chain(moved);
+            let moved =
+                targets.flat_map(|t| [t.positions, t.normals, t.tangents].into_iter().flatten());
+            let mut used = primitive
+                .attributes
+                .values()
+                .copied()
+                .chain(primitive.indices)
+                .chain(moved);
             if let Some(index) = used.find(|index| index.value() >= root.accessors.len()) {
-                return Err(format!("mesh {i} uses accessor {}, which does not exist", index.value()));
+                return Err(format!(
+                    "mesh {i} uses accessor {}, which does not exist",
+                    index.value()
+                ));
             }
         }
     }
-    let lights = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()).map_or(&[][..], |l| &l.lights);
+    let lights = root
+        .extensions
+        .as_ref()
+        .and_then(|e| e.khr_lights_punctual.as_ref())
+        .map_or(&[][..], |l| &l.lights);
     for (i, light) in lights.iter().enumerate() {
         use ::gltf::json::extensions::scene::khr_lights_punctual::Type;
         if matches!(light.type_, Checked::Valid(Type::Spot)) && light.spot.is_none() {
@@ -177,7 +240,10 @@ fn check(root: &Root) -> Result<(), String> {
         }
     }
     for (i, node) in root.nodes.iter().enumerate() {
-        let light = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+        let light = node
+            .extensions
+            .as_ref()
+            .and_then(|e| e.khr_lights_punctual.as_ref());
         if light.is_some_and(|light| light.light.value() >= lights.len()) {
             return Err(format!("node {i} has a light that does not exist"));
         }
@@ -194,8 +260,14 @@ fn check(root: &Root) -> Result<(), String> {
         }
     }
     for (i, animation) in root.animations.iter().enumerate() {
-        if animation.channels.iter().any(|channel| channel.sampler.value() >= animation.samplers.len()) {
-            return Err(format!("animation {i} has a channel whose sampler does not exist"));
+        if animation
+            .channels
+            .iter()
+            .any(|channel| channel.sampler.value() >= animation.samplers.len())
+        {
+            return Err(format!(
+                "animation {i} has a channel whose sampler does not exist"
+            ));
         }
     }
     Ok(())

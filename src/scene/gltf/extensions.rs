@@ -13,7 +13,10 @@ use crate::scene::warnings::Warnings;
 const MATTERS: [(&str, &str); 7] = [
     ("KHR_materials_anisotropy", "anisotropyStrength"),
     ("KHR_materials_clearcoat", "clearcoatFactor"),
-    ("KHR_materials_diffuse_transmission", "diffuseTransmissionFactor"),
+    (
+        "KHR_materials_diffuse_transmission",
+        "diffuseTransmissionFactor",
+    ),
     ("KHR_materials_dispersion", "dispersion"),
     ("KHR_materials_iridescence", "iridescenceFactor"),
     ("KHR_materials_sheen", "sheenColorFactor"),
@@ -29,33 +32,64 @@ pub(super) fn warn_of_others(from: &From, name: &str, warnings: &mut Warnings) {
 }
 
 fn matters(extension: &str, value: &Value) -> bool {
-    let Some((_, key)) = MATTERS.iter().find(|(known, _)| *known == extension) else { return true };
+    let Some((_, key)) = MATTERS.iter().find(|(known, _)| *known == extension) else {
+        return true;
+    };
     let on = |v: &Value| v.as_f64().is_some_and(|v| v != 0.0);
-    value.get(key).is_some_and(|v| on(v) || v.as_array().is_some_and(|list| list.iter().any(on)))
+    value
+        .get(key)
+        .is_some_and(|v| on(v) || v.as_array().is_some_and(|list| list.iter().any(on)))
 }
 
 /// KHR_materials_ior and KHR_materials_specular. Textures count with their mean: nobody else needs a lookup for them.
-pub(super) fn specular(material: &mut Material, from: &From, means: &Means, warnings: &mut Warnings) {
+pub(super) fn specular(
+    material: &mut Material,
+    from: &From,
+    means: &Means,
+    warnings: &mut Warnings,
+) {
     if let Some(ior) = from.ior() {
         // 0 stands for a surface that reflects everything; what is below 1 is no medium.
         material.ior = if ior == 0.0 { 0.0 } else { ior.clamp(1.0, 1e6) };
     }
-    let Some(specular) = from.specular() else { return };
-    let (factor, color) = (specular.specular_texture(), specular.specular_color_texture());
-    material.specular = (specular.specular_factor() * means.color(factor.as_ref()).w).clamp(0.0, 1.0);
-    material.specular_color = finite3(specular.specular_color_factor()) * means.color(color.as_ref()).truncate();
+    let Some(specular) = from.specular() else {
+        return;
+    };
+    let (factor, color) = (
+        specular.specular_texture(),
+        specular.specular_color_texture(),
+    );
+    material.specular =
+        (specular.specular_factor() * means.color(factor.as_ref()).w).clamp(0.0, 1.0);
+    material.specular_color =
+        finite3(specular.specular_color_factor()) * means.color(color.as_ref()).truncate();
     if factor.is_some() || color.is_some() {
-        warnings.add("of textures of KHR_materials_specular only the mean is used", &material.name);
+        warnings.add(
+            "of textures of KHR_materials_specular only the mean is used",
+            &material.name,
+        );
     }
 }
 
 /// KHR_materials_transmission: a surface is there or it is not. Light is not bent, and takes no colour on.
-pub(super) fn transmission(material: &mut Material, from: &From, means: &Means, warnings: &mut Warnings) {
-    let Some(transmission) = from.transmission() else { return };
+pub(super) fn transmission(
+    material: &mut Material,
+    from: &From,
+    means: &Means,
+    warnings: &mut Warnings,
+) {
+    let Some(transmission) = from.transmission() else {
+        return;
+    };
     let texture = transmission.transmission_texture();
     // Metals let nothing through; where a texture says what is metal, nothing is assumed to be.
-    let metallic = if material.metallic_roughness_texture.is_some() { 0.0 } else { material.metallic };
-    let share = transmission.transmission_factor() * means.data(texture.as_ref()).x * (1.0 - metallic);
+    let metallic = if material.metallic_roughness_texture.is_some() {
+        0.0
+    } else {
+        material.metallic
+    };
+    let share =
+        transmission.transmission_factor() * means.data(texture.as_ref()).x * (1.0 - metallic);
     if share > 0.5 {
         leave_out(material);
         warnings.add(

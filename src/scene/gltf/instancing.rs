@@ -10,38 +10,71 @@ use super::buffers::Buffers;
 pub(super) const MAX_INSTANCES: usize = 1 << 20;
 
 /// Where a node's mesh stands, in the space of the node; none without the extension.
-pub(super) fn places(node: &Node, document: &Document, buffers: &Buffers) -> Result<Option<Vec<Mat4>>, String> {
-    let Some(extension) = node.extension_value("EXT_mesh_gpu_instancing") else { return Ok(None) };
+pub(super) fn places(
+    node: &Node,
+    document: &Document,
+    buffers: &Buffers,
+) -> Result<Option<Vec<Mat4>>, String> {
+    let Some(extension) = node.extension_value("EXT_mesh_gpu_instancing") else {
+        return Ok(None);
+    };
     let attributes = extension.get("attributes");
     let accessor = |name: &str| {
-        let Some(index) = attributes.and_then(|a| a.get(name)) else { return Ok(None) };
+        let Some(index) = attributes.and_then(|a| a.get(name)) else {
+            return Ok(None);
+        };
         let index = index.as_u64().and_then(|i| usize::try_from(i).ok());
         match index.and_then(|i| document.accessors().nth(i)) {
             Some(accessor) if accessor.count() <= MAX_INSTANCES => Ok(Some(accessor)),
-            Some(accessor) => Err(format!("{} instances are more than {MAX_INSTANCES}", accessor.count())),
-            None => Err(format!("its {name} of EXT_mesh_gpu_instancing has no accessor")),
+            Some(accessor) => Err(format!(
+                "{} instances are more than {MAX_INSTANCES}",
+                accessor.count()
+            )),
+            None => Err(format!(
+                "its {name} of EXT_mesh_gpu_instancing has no accessor"
+            )),
         }
     };
-    let vectors = |name: &str| accessor(name)?.map(|a| accessors::floats::<3>(&a, buffers)).transpose();
+    let vectors = |name: &str| {
+        accessor(name)?
+            .map(|a| accessors::floats::<3>(&a, buffers))
+            .transpose()
+    };
     let (translations, scales) = (vectors("TRANSLATION")?, vectors("SCALE")?);
-    let rotations = accessor("ROTATION")?.map(|a| accessors::floats::<4>(&a, buffers)).transpose()?;
-    let counts = [translations.as_ref().map(Vec::len), rotations.as_ref().map(Vec::len), scales.as_ref().map(Vec::len)];
+    let rotations = accessor("ROTATION")?
+        .map(|a| accessors::floats::<4>(&a, buffers))
+        .transpose()?;
+    let counts = [
+        translations.as_ref().map(Vec::len),
+        rotations.as_ref().map(Vec::len),
+        scales.as_ref().map(Vec::len),
+    ];
     let mut counts = counts.into_iter().flatten();
-    let Some(count) = counts.next() else { return Ok(Some(Vec::new())) };
+    let Some(count) = counts.next() else {
+        return Ok(Some(Vec::new()));
+    };
     if counts.any(|other| other != count) {
         return Err("its attributes of EXT_mesh_gpu_instancing have different counts".into());
     }
     let place = |i: usize| {
-        let translation = translations.as_ref().map_or(Vec3::ZERO, |t| Vec3::from_array(t[i]));
-        let scale = scales.as_ref().map_or(Vec3::ONE, |s| Vec3::from_array(s[i]));
-        let rotation = rotations
+        let translation = translations
             .as_ref()
-            .map_or(Quat::IDENTITY, |r| Vec4::from_array(r[i]).try_normalize().map_or(Quat::IDENTITY, Quat::from_vec4));
+            .map_or(Vec3::ZERO, |t| Vec3::from_array(t[i]));
+        let scale = scales
+            .as_ref()
+            .map_or(Vec3::ONE, |s| Vec3::from_array(s[i]));
+        let rotation = rotations.as_ref().map_or(Quat::IDENTITY, |r| {
+            Vec4::from_array(r[i])
+                .try_normalize()
+                .map_or(Quat::IDENTITY, Quat::from_vec4)
+        });
         Mat4::from_scale_rotation_translation(scale, rotation, translation)
     };
     let places: Vec<Mat4> = (0..count).map(place).collect();
     match places.iter().all(Mat4::is_finite) {
         true => Ok(Some(places)),
-        false => Err("an instance of EXT_mesh_gpu_instancing has a place that is not finite".into()),
+        false => {
+            Err("an instance of EXT_mesh_gpu_instancing has a place that is not finite".into())
+        }
     }
 }

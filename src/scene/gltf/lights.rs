@@ -16,24 +16,38 @@ pub(in crate::scene) const SCALE: &str = "lights_scale";
 const PHOTOMETRIC: f32 = 1000.0;
 
 /// A light as it is placed by its node, or why there is none.
-pub(super) fn read(light: &From, name: &str, world: Mat4, warnings: &mut Warnings) -> Result<Light, &'static str> {
+pub(super) fn read(
+    light: &From,
+    name: &str,
+    world: Mat4,
+    warnings: &mut Warnings,
+) -> Result<Light, &'static str> {
     let mut color = Vec3::from_array(light.color()) * light.intensity();
     if !color.is_finite() {
         return Err("a colour or intensity that is too large");
     }
     if color.min_element() < 0.0 {
-        warnings.add("negative colours and intensities of lights count as 0", name);
+        warnings.add(
+            "negative colours and intensities of lights count as 0",
+            name,
+        );
         color = color.max(Vec3::ZERO);
     }
     let kind = match light.kind() {
         Kind::Directional => LightKind::Directional,
         Kind::Point => LightKind::Point,
-        Kind::Spot { inner_cone_angle, outer_cone_angle } => {
+        Kind::Spot {
+            inner_cone_angle,
+            outer_cone_angle,
+        } => {
             let in_order = 0.0 <= inner_cone_angle && inner_cone_angle <= outer_cone_angle;
             if !in_order || outer_cone_angle > FRAC_PI_2 + 1e-6 {
                 return Err("cone angles that do not obey 0 <= inner <= outer <= 90 degrees");
             }
-            LightKind::Spot { inner: inner_cone_angle, outer: outer_cone_angle.min(FRAC_PI_2) }
+            LightKind::Spot {
+                inner: inner_cone_angle,
+                outer: outer_cone_angle.min(FRAC_PI_2),
+            }
         }
     };
     Ok(Light {
@@ -41,15 +55,25 @@ pub(super) fn read(light: &From, name: &str, world: Mat4, warnings: &mut Warning
         kind,
         color,
         position: world.w_axis.truncate(),
-        direction: world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Y),
+        direction: world
+            .transform_vector3(Vec3::NEG_Z)
+            .normalize_or(Vec3::NEG_Y),
         shadow: true,
     })
 }
 
 /// Warns of lights that are probably in lux and candela, as Blender writes them.
 pub(super) fn warn_of_units(document: &Document, lights: &[Light], warnings: &mut Warnings) {
-    let generator = document.as_json().asset.generator.as_deref().unwrap_or_default();
-    let why = if lights.iter().any(|light| light.color.max_element() >= PHOTOMETRIC) {
+    let generator = document
+        .as_json()
+        .asset
+        .generator
+        .as_deref()
+        .unwrap_or_default();
+    let why = if lights
+        .iter()
+        .any(|light| light.color.max_element() >= PHOTOMETRIC)
+    {
         format!("intensities of {PHOTOMETRIC} and more are")
     } else if generator.contains("Blender") {
         "Blender writes intensities that are".into()

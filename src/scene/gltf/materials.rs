@@ -24,7 +24,10 @@ pub(super) fn read(
     progress: Progress,
 ) -> Result<(Vec<Material>, Vec<UvSources>, Requests), SceneError> {
     let mut requests = Requests::default();
-    let images: Vec<Source> = document.images().map(|image| buffers::image(&image, document, data, folder)).collect();
+    let images: Vec<Source> = document
+        .images()
+        .map(|image| buffers::image(&image, document, data, folder))
+        .collect();
     let means = Means::load(document, &images, warnings, progress)?;
     let mut materials = Vec::new();
     let mut uv_sources = Vec::new();
@@ -33,8 +36,16 @@ pub(super) fn read(
         materials.push(material);
         uv_sources.push(uv);
     }
-    if document.meshes().flat_map(|mesh| mesh.primitives()).any(|p| p.material().index().is_none()) {
-        materials.push(Material { base_color: Vec4::ONE, metallic: 1.0, ..Material::default() });
+    if document
+        .meshes()
+        .flat_map(|mesh| mesh.primitives())
+        .any(|p| p.material().index().is_none())
+    {
+        materials.push(Material {
+            base_color: Vec4::ONE,
+            metallic: 1.0,
+            ..Material::default()
+        });
         uv_sources.push(UvSources::default());
     }
     Ok((materials, uv_sources, requests))
@@ -43,7 +54,9 @@ pub(super) fn read(
 /// Its name, or a number.
 pub(super) fn name(material: &::gltf::Material) -> String {
     let index = material.index().unwrap_or_default();
-    material.name().map_or_else(|| format!("material {index}"), str::to_owned)
+    material
+        .name()
+        .map_or_else(|| format!("material {index}"), str::to_owned)
 }
 
 /// What base colour, metallic and roughness come from.
@@ -67,7 +80,11 @@ fn metallic_roughness<'a>(from: &::gltf::Material<'a>, images: &[Source]) -> Bas
         let image = source(&t, images);
         (t, Recipe::MetallicRoughness { image })
     });
-    Base { color: pbr.base_color_texture(), rough, material }
+    Base {
+        color: pbr.base_color_texture(),
+        rough,
+        material,
+    }
 }
 
 /// KHR_materials_pbrSpecularGlossiness: a dielectric whose reflectance is the specular colour, whatever it is.
@@ -79,9 +96,11 @@ fn specular_glossiness<'a>(
     warnings: &mut Warnings,
 ) -> Base<'a> {
     let texture = from.specular_glossiness_texture();
-    let specular = (finite3(from.specular_factor()) * means.color(texture.as_ref()).truncate()).min(Vec3::ONE);
+    let specular =
+        (finite3(from.specular_factor()) * means.color(texture.as_ref()).truncate()).min(Vec3::ONE);
     // What is reflected specularly is not diffuse.
-    let diffuse = finite4(from.diffuse_factor()) * Vec3::splat(1.0 - specular.max_element()).extend(1.0);
+    let diffuse =
+        finite4(from.diffuse_factor()) * Vec3::splat(1.0 - specular.max_element()).extend(1.0);
     let gloss = from.glossiness_factor().clamp(0.0, 1.0);
     if texture.is_some() {
         let what = "of specular colours in textures (KHR_materials_pbrSpecularGlossiness) only the mean is used";
@@ -89,7 +108,13 @@ fn specular_glossiness<'a>(
     }
     let rough = texture.map(|t| {
         let image = source(&t, images);
-        (t, Recipe::Glossiness { image, factor: (gloss * 255.0).round() as u8 })
+        (
+            t,
+            Recipe::Glossiness {
+                image,
+                factor: (gloss * 255.0).round() as u8,
+            },
+        )
     });
     let material = Material {
         base_color: diffuse,
@@ -98,7 +123,11 @@ fn specular_glossiness<'a>(
         specular_color: specular,
         ..Material::default()
     };
-    Base { color: from.diffuse_texture(), rough, material }
+    Base {
+        color: from.diffuse_texture(),
+        rough,
+        material,
+    }
 }
 
 fn convert(
@@ -109,7 +138,11 @@ fn convert(
     warnings: &mut Warnings,
 ) -> (Material, UvSources) {
     let name = name(from);
-    let Base { color, rough, material } = match from.pbr_specular_glossiness() {
+    let Base {
+        color,
+        rough,
+        material,
+    } = match from.pbr_specular_glossiness() {
         Some(gloss) => specular_glossiness(&gloss, &name, images, means, warnings),
         None => metallic_roughness(from, images),
     };
@@ -123,13 +156,19 @@ fn convert(
                     "materials that blend with an alpha below 0.5 everywhere are left out",
                     format!("{name}, {a:.2}"),
                 ),
-                _ => warnings.add("materials that blend are shown as masks at alpha 0.5", &name),
+                _ => warnings.add(
+                    "materials that blend are shown as masks at alpha 0.5",
+                    &name,
+                ),
             }
             0.5
         }
     };
     if alpha_cutoff > 1.0 {
-        warnings.add("materials with an alphaCutoff above 1 cut everything out", &name);
+        warnings.add(
+            "materials with an alphaCutoff above 1 cut everything out",
+            &name,
+        );
     }
     let mask = (alpha_cutoff > 0.0).then_some((alpha_cutoff * 255.0).round() as u8);
     let lit = !from.unlit();
@@ -160,11 +199,30 @@ fn convert(
         alpha_cutoff,
         two_sided: from.double_sided(),
         normal_scale: normal.as_ref().map_or(1.0, |n| n.scale()),
-        base_color_texture: color.map(|t| ask(Recipe::Color { image: source(&t, images), mask })),
+        base_color_texture: color.map(|t| {
+            ask(Recipe::Color {
+                image: source(&t, images),
+                mask,
+            })
+        }),
         metallic_roughness_texture: rough.map(|(_, recipe)| ask(recipe)),
-        normal_texture: normal.map(|t| ask(Recipe::Normal { image: images[t.texture().source().index()].clone() })),
-        emission_texture: emission.map(|t| ask(Recipe::Color { image: source(&t, images), mask: None })),
-        lookups: Lookups { base_color, metallic_roughness, normal: normal_map, emission: emission_map },
+        normal_texture: normal.map(|t| {
+            ask(Recipe::Normal {
+                image: images[t.texture().source().index()].clone(),
+            })
+        }),
+        emission_texture: emission.map(|t| {
+            ask(Recipe::Color {
+                image: source(&t, images),
+                mask: None,
+            })
+        }),
+        lookups: Lookups {
+            base_color,
+            metallic_roughness,
+            normal: normal_map,
+            emission: emission_map,
+        },
         name: name.clone(),
         ..material
     };
@@ -185,10 +243,18 @@ fn source(info: &texture::Info, images: &[Source]) -> Source {
 /// A colour of numbers at or above 0.
 pub(super) fn finite3(color: [f32; 3]) -> Vec3 {
     let color = Vec3::from_array(color);
-    if color.is_finite() { color.max(Vec3::ZERO) } else { Vec3::ZERO }
+    if color.is_finite() {
+        color.max(Vec3::ZERO)
+    } else {
+        Vec3::ZERO
+    }
 }
 
 fn finite4(color: [f32; 4]) -> Vec4 {
     let color = Vec4::from_array(color);
-    if color.is_finite() { color.clamp(Vec4::ZERO, Vec4::ONE) } else { Vec4::ONE }
+    if color.is_finite() {
+        color.clamp(Vec4::ZERO, Vec4::ONE)
+    } else {
+        Vec4::ONE
+    }
 }

@@ -29,14 +29,22 @@ impl Means {
             for (info, color) in asked(&material) {
                 let i = info.texture().source().index();
                 let image = images[i].clone();
-                let recipe =
-                    if color { Recipe::Color { image, mask: None } } else { Recipe::MetallicRoughness { image } };
+                let recipe = if color {
+                    Recipe::Color { image, mask: None }
+                } else {
+                    Recipe::MetallicRoughness { image }
+                };
                 indices.insert((i, color), requests.ask(recipe, &name));
             }
         }
         let (means, more) = requests.means(progress)?;
         more.into_iter().for_each(|line| warnings.add(line, ""));
-        Ok(Means(indices.into_iter().map(|(key, i)| (key, means[i as usize])).collect()))
+        Ok(Means(
+            indices
+                .into_iter()
+                .map(|(key, i)| (key, means[i as usize]))
+                .collect(),
+        ))
     }
 
     /// Of colours, alpha linear; white without a texture.
@@ -51,7 +59,9 @@ impl Means {
 
     fn of(&self, info: Option<&texture::Info>, color: bool) -> Vec4 {
         let key = info.map(|info| (info.texture().source().index(), color));
-        key.and_then(|key| self.0.get(&key)).copied().unwrap_or(Vec4::ONE)
+        key.and_then(|key| self.0.get(&key))
+            .copied()
+            .unwrap_or(Vec4::ONE)
     }
 }
 
@@ -61,8 +71,17 @@ fn asked<'a>(material: &Material<'a>) -> Vec<(texture::Info<'a>, bool)> {
     let colors = [
         specular.as_ref().and_then(|s| s.specular_texture()),
         specular.as_ref().and_then(|s| s.specular_color_texture()),
-        material.pbr_specular_glossiness().and_then(|s| s.specular_glossiness_texture()),
+        material
+            .pbr_specular_glossiness()
+            .and_then(|s| s.specular_glossiness_texture()),
     ];
-    let data = material.transmission().and_then(|t| t.transmission_texture());
-    colors.into_iter().flatten().map(|info| (info, true)).chain(data.map(|info| (info, false))).collect()
+    let data = material
+        .transmission()
+        .and_then(|t| t.transmission_texture());
+    colors
+        .into_iter()
+        .flatten()
+        .map(|info| (info, true))
+        .chain(data.map(|info| (info, false)))
+        .collect()
 }

@@ -35,7 +35,9 @@ pub(super) fn read(
     // Primitives may share their vertices; a small file must not fill the memory.
     let mut room = MANY + buffers.len();
     for mesh in document.meshes() {
-        let name = mesh.name().map_or_else(|| format!("mesh {}", mesh.index()), str::to_owned);
+        let name = mesh
+            .name()
+            .map_or_else(|| format!("mesh {}", mesh.index()), str::to_owned);
         for primitive in mesh.primitives() {
             if progress.stopped() {
                 return Err(String::new());
@@ -45,9 +47,16 @@ pub(super) fn read(
             if materials[material].is_left_out() {
                 continue;
             }
-            let points = matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip);
+            let points = matches!(
+                primitive.mode(),
+                Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip
+            );
             if points || primitive.get(&Semantic::Positions).is_none() {
-                let what = if points { "points and lines" } else { "primitives without positions" };
+                let what = if points {
+                    "points and lines"
+                } else {
+                    "primitives without positions"
+                };
                 warnings.add(format!("{what} are left out"), &name);
                 continue;
             }
@@ -66,31 +75,48 @@ pub(super) fn read(
             primitives.push(raw);
             owners.push(mesh.index());
             if primitive.get(&Semantic::Colors(1)).is_some() {
-                warnings.add("COLOR_1 and further colours of vertices are left out", &name);
+                warnings.add(
+                    "COLOR_1 and further colours of vertices are left out",
+                    &name,
+                );
             }
         }
-        meshes.push(Mesh { name, ..Mesh::default() });
+        meshes.push(Mesh {
+            name,
+            ..Mesh::default()
+        });
     }
     // glTF 2.0, 3.7.2.1: without normals they are flat.
-    primitives.par_iter_mut().filter(|raw| !raw.has_normals).for_each(|raw| {
-        match raw.sources.is_empty() {
-            true => flat(&mut raw.mesh),
-            // Triangles that lie in one plane now may not in another pose.
-            false => {
-                unweld(raw);
-                flatten(&mut raw.mesh.vertices);
+    primitives
+        .par_iter_mut()
+        .filter(|raw| !raw.has_normals)
+        .for_each(|raw| {
+            match raw.sources.is_empty() {
+                true => flat(&mut raw.mesh),
+                // Triangles that lie in one plane now may not in another pose.
+                false => {
+                    unweld(raw);
+                    flatten(&mut raw.mesh.vertices);
+                }
             }
-        }
-        raw.has_normals = true;
-    });
+            raw.has_normals = true;
+        });
     let (prepared, dropped) = prepare_rigged(primitives, materials, progress)?;
     let mut rigs = Rigs::new();
-    for ((owner, (primitive, sources)), (rig, flat)) in owners.into_iter().zip(prepared).zip(primitive_rigs) {
+    for ((owner, (primitive, sources)), (rig, flat)) in
+        owners.into_iter().zip(prepared).zip(primitive_rigs)
+    {
         let before = meshes[owner].vertices.len();
-        let sources = if rig.is_some() { sources } else { vec![0; primitive.vertices.len()] };
+        let sources = if rig.is_some() {
+            sources
+        } else {
+            vec![0; primitive.vertices.len()]
+        };
         if rig.is_some() || rigs.contains_key(&owner) {
             let flat = flat && rig.is_some();
-            rigs.entry(owner).or_default().append(before, rig.as_ref(), &sources, flat);
+            rigs.entry(owner)
+                .or_default()
+                .append(before, rig.as_ref(), &sources, flat);
         }
         append(&mut meshes[owner], primitive)?;
     }
@@ -98,13 +124,17 @@ pub(super) fn read(
 }
 
 fn append(mesh: &mut Mesh, primitive: Mesh) -> Result<(), String> {
-    let base = u32::try_from(mesh.vertices.len()).map_err(|_| format!("mesh '{}' is too large", mesh.name))?;
+    let base = u32::try_from(mesh.vertices.len())
+        .map_err(|_| format!("mesh '{}' is too large", mesh.name))?;
     let first = mesh.indices.len() as u32;
-    mesh.indices.extend(primitive.indices.iter().map(|i| i.saturating_add(base)));
+    mesh.indices
+        .extend(primitive.indices.iter().map(|i| i.saturating_add(base)));
     mesh.vertices.extend(primitive.vertices);
-    mesh.submeshes.extend(
-        primitive.submeshes.iter().map(|submesh| Submesh { first_index: submesh.first_index + first, ..*submesh }),
-    );
+    mesh.submeshes
+        .extend(primitive.submeshes.iter().map(|submesh| Submesh {
+            first_index: submesh.first_index + first,
+            ..*submesh
+        }));
     Ok(())
 }
 
@@ -115,45 +145,85 @@ fn read_primitive(
     material: usize,
     uv_sources: &UvSources,
 ) -> Result<RawMesh, String> {
-    let positions = primitive.get(&Semantic::Positions).ok_or("a primitive has no positions")?;
+    let positions = primitive
+        .get(&Semantic::Positions)
+        .ok_or("a primitive has no positions")?;
     let positions = accessors::floats::<3>(&positions, buffers)?;
     let same_count = |found: usize, what: &str| match found == positions.len() {
         true => Ok(()),
         false => Err(format!("{found} {what} for {} positions", positions.len())),
     };
-    let mut vertices: Vec<Vertex> =
-        positions.iter().map(|&position| Vertex { position, ..Vertex::default() }).collect();
-    let normals = primitive.get(&Semantic::Normals).map(|a| accessors::floats::<3>(&a, buffers)).transpose()?;
-    let tangents = primitive.get(&Semantic::Tangents).map(|a| accessors::floats::<4>(&a, buffers)).transpose()?;
+    let mut vertices: Vec<Vertex> = positions
+        .iter()
+        .map(|&position| Vertex {
+            position,
+            ..Vertex::default()
+        })
+        .collect();
+    let normals = primitive
+        .get(&Semantic::Normals)
+        .map(|a| accessors::floats::<3>(&a, buffers))
+        .transpose()?;
+    let tangents = primitive
+        .get(&Semantic::Tangents)
+        .map(|a| accessors::floats::<4>(&a, buffers))
+        .transpose()?;
     if let Some(normals) = &normals {
         same_count(normals.len(), "normals")?;
-        vertices.iter_mut().zip(normals).for_each(|(vertex, n)| vertex.normal = *n);
+        vertices
+            .iter_mut()
+            .zip(normals)
+            .for_each(|(vertex, n)| vertex.normal = *n);
     }
     if let Some(tangents) = &tangents {
         same_count(tangents.len(), "tangents")?;
-        vertices.iter_mut().zip(tangents).for_each(|(vertex, t)| vertex.tangent = *t);
+        vertices
+            .iter_mut()
+            .zip(tangents)
+            .for_each(|(vertex, t)| vertex.tangent = *t);
     }
     if let Some(uvs) = texture_coordinates(primitive, buffers, &uv_sources.first)? {
         same_count(uvs.len(), "texture coordinates")?;
-        vertices.iter_mut().zip(uvs).for_each(|(vertex, uv)| vertex.uv = uv);
+        vertices
+            .iter_mut()
+            .zip(uvs)
+            .for_each(|(vertex, uv)| vertex.uv = uv);
     }
-    let second =
-        uv_sources.second.as_ref().map(|source| texture_coordinates(primitive, buffers, source)).transpose()?;
+    let second = uv_sources
+        .second
+        .as_ref()
+        .map(|source| texture_coordinates(primitive, buffers, source))
+        .transpose()?;
     if let Some(uvs) = second.flatten() {
         same_count(uvs.len(), "texture coordinates")?;
-        vertices.iter_mut().zip(uvs).for_each(|(vertex, uv)| vertex.uv_second = uv);
+        vertices
+            .iter_mut()
+            .zip(uvs)
+            .for_each(|(vertex, uv)| vertex.uv_second = uv);
     }
     if let Some(colors) = colors(primitive, buffers)? {
         same_count(colors.len(), "colours")?;
-        vertices.iter_mut().zip(colors).for_each(|(vertex, color)| vertex.color = color);
+        vertices
+            .iter_mut()
+            .zip(colors)
+            .for_each(|(vertex, color)| vertex.color = color);
     }
     let indices = match primitive.indices() {
         Some(accessor) => accessors::indices(&accessor, buffers)?,
         None => (0..vertices.len() as u32).collect(),
     };
     let indices = triangles(primitive.mode(), indices);
-    let submesh = Submesh { first_index: 0, index_count: indices.len() as u32, material: material as u32 };
-    let mesh = Mesh { name: name.into(), vertices, indices, submeshes: vec![submesh] };
+    let submesh = Submesh {
+        first_index: 0,
+        index_count: indices.len() as u32,
+        material: material as u32,
+    };
+    let mesh = Mesh {
+        name: name.into(),
+        vertices,
+        indices,
+        submeshes: vec![submesh],
+    };
     // Tangents without normals are ignored.
     Ok(RawMesh {
         mesh,
@@ -169,18 +239,33 @@ fn texture_coordinates(
     buffers: &Buffers,
     source: &UvSource,
 ) -> Result<Option<Vec<[f32; 2]>>, String> {
-    let Some(accessor) = primitive.get(&Semantic::TexCoords(source.set)) else { return Ok(None) };
-    let placed = |uv| source.transform.transform_point2(Vec2::from_array(uv)).to_array();
-    Ok(Some(accessors::floats::<2>(&accessor, buffers)?.into_iter().map(placed).collect()))
+    let Some(accessor) = primitive.get(&Semantic::TexCoords(source.set)) else {
+        return Ok(None);
+    };
+    let placed = |uv| {
+        source
+            .transform
+            .transform_point2(Vec2::from_array(uv))
+            .to_array()
+    };
+    Ok(Some(
+        accessors::floats::<2>(&accessor, buffers)?
+            .into_iter()
+            .map(placed)
+            .collect(),
+    ))
 }
 
 /// COLOR_0, linear.
 fn colors(primitive: &Primitive, buffers: &Buffers) -> Result<Option<Vec<[f32; 4]>>, String> {
-    let Some(accessor) = primitive.get(&Semantic::Colors(0)) else { return Ok(None) };
+    let Some(accessor) = primitive.get(&Semantic::Colors(0)) else {
+        return Ok(None);
+    };
     Ok(Some(match accessor.dimensions() {
-        Dimensions::Vec3 => {
-            accessors::floats::<3>(&accessor, buffers)?.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect()
-        }
+        Dimensions::Vec3 => accessors::floats::<3>(&accessor, buffers)?
+            .into_iter()
+            .map(|[r, g, b]| [r, g, b, 1.0])
+            .collect(),
         _ => accessors::floats::<4>(&accessor, buffers)?,
     }))
 }
@@ -190,13 +275,22 @@ fn triangles(mode: Mode, indices: Vec<u32>) -> Vec<u32> {
     match mode {
         Mode::TriangleStrip => {
             let triangle = |(i, w): (usize, &[u32])| {
-                if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] }
+                if i % 2 == 0 {
+                    [w[0], w[1], w[2]]
+                } else {
+                    [w[1], w[0], w[2]]
+                }
             };
             indices.windows(3).enumerate().flat_map(triangle).collect()
         }
         Mode::TriangleFan => {
             let hub = indices.first().copied().unwrap_or_default();
-            indices.get(1..).unwrap_or_default().windows(2).flat_map(|w| [hub, w[0], w[1]]).collect()
+            indices
+                .get(1..)
+                .unwrap_or_default()
+                .windows(2)
+                .flat_map(|w| [hub, w[0], w[1]])
+                .collect()
         }
         _ => {
             let mut indices = indices;

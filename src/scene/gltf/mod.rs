@@ -35,33 +35,66 @@ pub(super) use lights::SCALE;
 /// Geometry, materials, textures, lights and cameras of a glTF file; no sky.
 ///
 /// `clip`: the name of the animation that comes before all others.
-pub(super) fn load(path: &Path, clip: Option<&str>, progress: Progress) -> Result<Scene, SceneError> {
-    let fail = |message: String| SceneError::Model { path: path.into(), message };
+pub(super) fn load(
+    path: &Path,
+    clip: Option<&str>,
+    progress: Progress,
+) -> Result<Scene, SceneError> {
+    let fail = |message: String| SceneError::Model {
+        path: path.into(),
+        message,
+    };
     progress.step("reading", 0.0)?;
     let bytes = read_input(path, buffers::MAX_BYTES).map_err(|source| SceneError::Read {
         path: path.into(),
         hint: "Check the path and its permissions".into(),
         source,
     })?;
-    let Checks { document, blob, unreadable, mut warnings } = document::read(&bytes).map_err(fail)?;
+    let Checks {
+        document,
+        blob,
+        unreadable,
+        mut warnings,
+    } = document::read(&bytes).map_err(fail)?;
     drop(bytes);
     let folder = path.parent().unwrap_or(Path::new(""));
     let buffers = Buffers::load(&document, blob, unreadable, folder, progress);
 
     progress.step("materials", 0.2)?;
-    let (materials, uv_sources, requests) = materials::read(&document, &buffers, folder, &mut warnings, progress)?;
+    let (materials, uv_sources, requests) =
+        materials::read(&document, &buffers, folder, &mut warnings, progress)?;
     progress.step("meshes", 0.3)?;
-    let (meshes, rigs, dropped) =
-        meshes::read(&document, &buffers, &materials, &uv_sources, &mut warnings, progress).map_err(fail)?;
+    let (meshes, rigs, dropped) = meshes::read(
+        &document,
+        &buffers,
+        &materials,
+        &uv_sources,
+        &mut warnings,
+        progress,
+    )
+    .map_err(fail)?;
     progress.step("nodes", 0.6)?;
     let tracks = animation::tracks(&document, &buffers, clip, &mut warnings).map_err(fail)?;
     let placed = nodes::place(&document, &buffers, &tracks, &rigs, &mut warnings).map_err(fail)?;
-    let nodes::Placed { mut scene, frames, deforming, .. } = placed;
+    let nodes::Placed {
+        mut scene,
+        frames,
+        deforming,
+        ..
+    } = placed;
     scene.meshes = meshes;
     let mut posings = Vec::new();
     for (instance, node) in &deforming {
-        let Some(rig) = rigs.get(&(scene.instances[*instance].mesh as usize)) else { continue };
-        let posing = skins::posing((*instance, node), rig, (&tracks, &frames), &buffers, &mut warnings);
+        let Some(rig) = rigs.get(&(scene.instances[*instance].mesh as usize)) else {
+            continue;
+        };
+        let posing = skins::posing(
+            (*instance, node),
+            rig,
+            (&tracks, &frames),
+            &buffers,
+            &mut warnings,
+        );
         posings.push(posing.map_err(fail)?);
     }
     attach(&mut scene, posings, &rigs, meshes::MANY + buffers.len()).map_err(fail)?;
@@ -74,6 +107,8 @@ pub(super) fn load(path: &Path, clip: Option<&str>, progress: Progress) -> Resul
     let (textures, texture_warnings) = requests.load(progress)?;
     scene.warnings.extend(texture_warnings);
     (scene.materials, scene.textures) = (materials, textures);
-    scene.instances.retain(|instance| !scene.meshes[instance.mesh as usize].submeshes.is_empty());
+    scene
+        .instances
+        .retain(|instance| !scene.meshes[instance.mesh as usize].submeshes.is_empty());
     Ok(scene)
 }

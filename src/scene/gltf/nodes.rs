@@ -51,31 +51,59 @@ pub(super) fn place<'a>(
     warnings: &mut Warnings,
 ) -> Result<Placed<'a>, String> {
     let mut placed = Placed::default();
-    let Some(root) = document.default_scene().or_else(|| document.scenes().next()) else {
+    let Some(root) = document
+        .default_scene()
+        .or_else(|| document.scenes().next())
+    else {
         warnings.add("the file has no scene", "");
         return Ok(placed);
     };
     let mut seen = vec![false; document.nodes().count()];
-    let top = |node| Visit { node, mover: None, above: Mat4::IDENTITY, visible: true };
+    let top = |node| Visit {
+        node,
+        mover: None,
+        above: Mat4::IDENTITY,
+        visible: true,
+    };
     let mut stack: Vec<Visit> = root.nodes().map(top).collect();
     stack.reverse();
     while let Some(visit) = stack.pop() {
-        let Visit { node, mut mover, above, visible } = visit;
+        let Visit {
+            node,
+            mut mover,
+            above,
+            visible,
+        } = visit;
         if std::mem::replace(&mut seen[node.index()], true) {
-            return Err(format!("node {} is its own ancestor or has two parents. Export it again", node.index()));
+            return Err(format!(
+                "node {} is its own ancestor or has two parents. Export it again",
+                node.index()
+            ));
         }
-        let name = node.name().map_or_else(|| format!("node {}", node.index()), str::to_owned);
+        let name = node
+            .name()
+            .map_or_else(|| format!("node {}", node.index()), str::to_owned);
         let mut local = above * Mat4::from_cols_array_2d(&node.transform().matrix());
         if !local.is_finite() {
-            return Err(format!("node '{name}' has a transform that is not finite. Export it again"));
+            return Err(format!(
+                "node '{name}' has a transform that is not finite. Export it again"
+            ));
         }
         if let Some(track) = tracks.of(&node) {
-            let depth = mover.and_then(|m| placed.depths.get(m as usize)).map_or(1, |depth| depth + 1);
+            let depth = mover
+                .and_then(|m| placed.depths.get(m as usize))
+                .map_or(1, |depth| depth + 1);
             if depth > MAX_DEPTH {
-                return Err(format!("node '{name}' moves in more than {MAX_DEPTH} moving nodes"));
+                return Err(format!(
+                    "node '{name}' moves in more than {MAX_DEPTH} moving nodes"
+                ));
             }
             placed.depths.push(depth);
-            placed.scene.movers.push(Mover { parent: mover, placed: above, track });
+            placed.scene.movers.push(Mover {
+                parent: mover,
+                placed: above,
+                track,
+            });
             (mover, local) = (Some(placed.scene.movers.len() as u32 - 1), Mat4::IDENTITY);
         }
         placed.frames.insert(node.index(), (mover, local));
@@ -84,14 +112,28 @@ pub(super) fn place<'a>(
             warnings.add("invisible nodes (KHR_node_visibility) are left out", &name);
         }
         if visible {
-            add_instances(&mut placed, &node, (mover, local), &name, rigs, (document, buffers))?;
+            add_instances(
+                &mut placed,
+                &node,
+                (mover, local),
+                &name,
+                rigs,
+                (document, buffers),
+            )?;
         }
         // Lights and cameras stand where they are at the start.
         let moves = mover.is_some() && (node.light().is_some() || node.camera().is_some());
         if moves {
-            warnings.add("lights and cameras of moving nodes stay where they are at 0 s", &name);
+            warnings.add(
+                "lights and cameras of moving nodes stay where they are at 0 s",
+                &name,
+            );
         }
-        let start = if moves { placed.scene.moved(mover, local, 0.0) } else { local };
+        let start = if moves {
+            placed.scene.moved(mover, local, 0.0)
+        } else {
+            local
+        };
         if let Some(light) = node.light().filter(|_| visible) {
             match lights::read(&light, &name, start, warnings) {
                 Ok(light) => placed.scene.lights.push(light),
@@ -101,12 +143,23 @@ pub(super) fn place<'a>(
         if let Some(camera) = node.camera() {
             match read_camera(&camera.projection(), start) {
                 Some(view) => {
-                    placed.scene.cameras.insert(camera.name().unwrap_or(&name).to_owned(), view);
+                    placed
+                        .scene
+                        .cameras
+                        .insert(camera.name().unwrap_or(&name).to_owned(), view);
                 }
                 None => warnings.add("cameras that are no usable perspective are left out", &name),
             }
         }
-        let children: Vec<Visit> = node.children().map(|node| Visit { node, mover, above: local, visible }).collect();
+        let children: Vec<Visit> = node
+            .children()
+            .map(|node| Visit {
+                node,
+                mover,
+                above: local,
+                visible,
+            })
+            .collect();
         stack.extend(children.into_iter().rev());
     }
     Ok(placed)
@@ -121,8 +174,11 @@ fn add_instances<'a>(
     rigs: &Rigs,
     (document, buffers): (&Document, &Buffers),
 ) -> Result<(), String> {
-    let Some(mesh) = node.mesh() else { return Ok(()) };
-    let places = instancing::places(node, document, buffers).map_err(|why| format!("node '{name}': {why}"))?;
+    let Some(mesh) = node.mesh() else {
+        return Ok(());
+    };
+    let places = instancing::places(node, document, buffers)
+        .map_err(|why| format!("node '{name}': {why}"))?;
     let instances = &mut placed.scene.instances;
     if instances.len() + places.as_ref().map_or(1, Vec::len) > MAX_INSTANCES {
         return Err(format!("it has more than {MAX_INSTANCES} instances"));
@@ -133,15 +189,24 @@ fn add_instances<'a>(
         (mover, transform) = (None, Mat4::IDENTITY);
     }
     let mesh = mesh.index() as u32;
-    let instance = |name, transform| Instance { name, mesh, transform, mover };
+    let instance = |name, transform| Instance {
+        name,
+        mesh,
+        transform,
+        mover,
+    };
     match places {
         None => instances.push(instance(name.into(), transform)),
-        Some(places) => {
-            instances.extend((1..).zip(places).map(|(i, place)| instance(format!("{name} {i}"), transform * place)))
-        }
+        Some(places) => instances.extend(
+            (1..)
+                .zip(places)
+                .map(|(i, place)| instance(format!("{name} {i}"), transform * place)),
+        ),
     }
     if rigs.contains_key(&(mesh as usize)) {
-        placed.deforming.extend((first..placed.scene.instances.len()).map(|i| (i, node.clone())));
+        placed
+            .deforming
+            .extend((first..placed.scene.instances.len()).map(|i| (i, node.clone())));
     }
     Ok(())
 }
@@ -149,7 +214,10 @@ fn add_instances<'a>(
 /// KHR_node_visibility.
 fn is_visible(node: &Node) -> bool {
     let extension = node.extension_value("KHR_node_visibility");
-    extension.and_then(|e| e.get("visible")).and_then(serde_json::Value::as_bool).unwrap_or(true)
+    extension
+        .and_then(|e| e.get("visible"))
+        .and_then(serde_json::Value::as_bool)
+        .unwrap_or(true)
 }
 
 fn read_camera(projection: &Projection, world: Mat4) -> Option<Camera> {
@@ -162,7 +230,11 @@ fn read_camera(projection: &Projection, world: Mat4) -> Option<Camera> {
     let usable = fov_y > 0.0 && fov_y < 180.0 && near > 0.0 && near.is_finite() && far > near;
     usable.then(|| Camera {
         eye,
-        target: eye + world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z) * least_reach(eye).max(1.0),
+        target: eye
+            + world
+                .transform_vector3(Vec3::NEG_Z)
+                .normalize_or(Vec3::NEG_Z)
+                * least_reach(eye).max(1.0),
         up: world.transform_vector3(Vec3::Y).normalize_or(Vec3::Y),
         fov_y,
         near,

@@ -17,14 +17,20 @@ pub(super) struct UvSource {
 
 impl Default for UvSource {
     fn default() -> Self {
-        UvSource { set: 0, transform: Affine2::IDENTITY }
+        UvSource {
+            set: 0,
+            transform: Affine2::IDENTITY,
+        }
     }
 }
 
 impl UvSource {
     fn of(info: &texture::Info) -> UvSource {
         let Some(t) = info.texture_transform() else {
-            return UvSource { set: info.tex_coord(), ..UvSource::default() };
+            return UvSource {
+                set: info.tex_coord(),
+                ..UvSource::default()
+            };
         };
         UvSource {
             set: t.tex_coord().unwrap_or(info.tex_coord()),
@@ -38,7 +44,10 @@ impl UvSource {
         let json = map.extension_value("KHR_texture_transform").cloned();
         let transform: Option<TextureTransform> = json.and_then(|t| serde_json::from_value(t).ok());
         Some(match transform {
-            None => UvSource { set: map.tex_coord(), ..UvSource::default() },
+            None => UvSource {
+                set: map.tex_coord(),
+                ..UvSource::default()
+            },
             Some(t) => UvSource {
                 set: t.tex_coord.unwrap_or(map.tex_coord()),
                 transform: placed(t.offset.0, t.rotation.0, t.scale.0),
@@ -49,7 +58,11 @@ impl UvSource {
 
 /// KHR_texture_transform turns counter-clockwise in a frame whose v points down.
 fn placed(offset: [f32; 2], rotation: f32, scale: [f32; 2]) -> Affine2 {
-    Affine2::from_scale_angle_translation(Vec2::from_array(scale), -rotation, Vec2::from_array(offset))
+    Affine2::from_scale_angle_translation(
+        Vec2::from_array(scale),
+        -rotation,
+        Vec2::from_array(offset),
+    )
 }
 
 /// The sources that the vertices of a material have.

@@ -34,30 +34,61 @@ pub(super) fn read(
     for target in targets {
         let mut vectors = |accessor: Option<::gltf::Accessor>| -> Result<Vec<Vec3>, String> {
             take(accessor.is_some())?;
-            let list = accessor.map(|a| accessors::floats::<3>(&a, buffers)).transpose()?.unwrap_or_default();
+            let list = accessor
+                .map(|a| accessors::floats::<3>(&a, buffers))
+                .transpose()?
+                .unwrap_or_default();
             match list.is_empty() || list.len() == count {
                 true => Ok(list.into_iter().map(finite).collect()),
-                false => Err(format!("a morph target has {} vectors for {count} vertices", list.len())),
+                false => Err(format!(
+                    "a morph target has {} vectors for {count} vertices",
+                    list.len()
+                )),
             }
         };
         let (positions, normals) = (vectors(target.positions())?, vectors(target.normals())?);
-        morphs.push(Morph { positions, normals, tangents: vectors(target.tangents())? });
+        morphs.push(Morph {
+            positions,
+            normals,
+            tangents: vectors(target.tangents())?,
+        });
     }
     let mut each: Vec<Vec<Influence>> = vec![Vec::new(); count];
     for set in 0.. {
-        let semantics = (primitive.get(&Semantic::Joints(set)), primitive.get(&Semantic::Weights(set)));
-        let (Some(joints), Some(weights)) = semantics else { break };
+        let semantics = (
+            primitive.get(&Semantic::Joints(set)),
+            primitive.get(&Semantic::Weights(set)),
+        );
+        let (Some(joints), Some(weights)) = semantics else {
+            break;
+        };
         take(true)?;
-        let (joints, weights) = (accessors::floats::<4>(&joints, buffers)?, accessors::floats::<4>(&weights, buffers)?);
+        let (joints, weights) = (
+            accessors::floats::<4>(&joints, buffers)?,
+            accessors::floats::<4>(&weights, buffers)?,
+        );
         if joints.len() != count || weights.len() != count {
-            return Err(format!("{} joints and {} weights for {count} vertices", joints.len(), weights.len()));
+            return Err(format!(
+                "{} joints and {} weights for {count} vertices",
+                joints.len(),
+                weights.len()
+            ));
         }
         for (list, (joints, weights)) in each.iter_mut().zip(joints.into_iter().zip(weights)) {
-            let all = joints.into_iter().zip(weights).filter(|(_, weight)| *weight > 0.0 && weight.is_finite());
-            list.extend(all.map(|(joint, weight)| Influence { joint: joint as u32, weight }));
+            let all = joints
+                .into_iter()
+                .zip(weights)
+                .filter(|(_, weight)| *weight > 0.0 && weight.is_finite());
+            list.extend(all.map(|(joint, weight)| Influence {
+                joint: joint as u32,
+                weight,
+            }));
         }
     }
-    let mut rig = Rig { morphs, ..Rig::default() };
+    let mut rig = Rig {
+        morphs,
+        ..Rig::default()
+    };
     each.iter().for_each(|list| rig.push(list));
     Ok(Some(rig))
 }
@@ -77,41 +108,89 @@ pub(super) fn posing(
     let (weights, period) = match tracks.weights(node) {
         Some((curves, period)) => (curves.clone(), *period),
         None => {
-            let given = node.weights().or_else(|| node.mesh().and_then(|m| m.weights())).unwrap_or_default();
-            let fixed = |i| Curve::new(vec![0.0], vec![given.get(i).copied().unwrap_or(0.0)], Interpolation::Step);
+            let given = node
+                .weights()
+                .or_else(|| node.mesh().and_then(|m| m.weights()))
+                .unwrap_or_default();
+            let fixed = |i| {
+                Curve::new(
+                    vec![0.0],
+                    vec![given.get(i).copied().unwrap_or(0.0)],
+                    Interpolation::Step,
+                )
+            };
             let curves: Option<Vec<_>> = (0..rig.morphs.len()).map(fixed).collect();
-            (curves.ok_or_else(|| format!("node {} has weights that are not finite", node.index()))?, None)
+            (
+                curves.ok_or_else(|| {
+                    format!("node {} has weights that are not finite", node.index())
+                })?,
+                None,
+            )
         }
     };
     let joints = match node.skin() {
         Some(skin) => joints(&skin, frames, buffers, warnings)?,
         None => Vec::new(),
     };
-    if rig.influences.iter().any(|i| i.joint as usize >= joints.len()) && !joints.is_empty() {
-        warnings.add("vertices of joints that their skin does not have stay where they are", skin_name(node));
+    if rig
+        .influences
+        .iter()
+        .any(|i| i.joint as usize >= joints.len())
+        && !joints.is_empty()
+    {
+        warnings.add(
+            "vertices of joints that their skin does not have stay where they are",
+            skin_name(node),
+        );
     }
-    Ok(Posing { instance, joints, weights, period })
+    Ok(Posing {
+        instance,
+        joints,
+        weights,
+        period,
+    })
 }
 
 fn skin_name(node: &Node) -> String {
-    node.name().map_or_else(|| format!("node {}", node.index()), str::to_owned)
+    node.name()
+        .map_or_else(|| format!("node {}", node.index()), str::to_owned)
 }
 
-fn joints(skin: &Skin, frames: &Frames, buffers: &Buffers, warnings: &mut Warnings) -> Result<Vec<Joint>, String> {
-    let name = skin.name().map_or_else(|| format!("skin {}", skin.index()), str::to_owned);
-    let inverse: Option<Vec<[f32; 16]>> =
-        skin.inverse_bind_matrices().map(|a| accessors::floats::<16>(&a, buffers)).transpose()?;
+fn joints(
+    skin: &Skin,
+    frames: &Frames,
+    buffers: &Buffers,
+    warnings: &mut Warnings,
+) -> Result<Vec<Joint>, String> {
+    let name = skin
+        .name()
+        .map_or_else(|| format!("skin {}", skin.index()), str::to_owned);
+    let inverse: Option<Vec<[f32; 16]>> = skin
+        .inverse_bind_matrices()
+        .map(|a| accessors::floats::<16>(&a, buffers))
+        .transpose()?;
     let count = skin.joints().len();
-    if inverse.as_ref().is_some_and(|list| list.len() < count || list.iter().flatten().any(|x| !x.is_finite())) {
-        return Err(format!("{name} has fewer inverse bind matrices than joints, or some are not finite"));
+    if inverse
+        .as_ref()
+        .is_some_and(|list| list.len() < count || list.iter().flatten().any(|x| !x.is_finite()))
+    {
+        return Err(format!(
+            "{name} has fewer inverse bind matrices than joints, or some are not finite"
+        ));
     }
     let joint = |(i, node): (usize, Node)| {
         let (mover, transform) = frames.get(&node.index()).copied().unwrap_or_else(|| {
             warnings.add("joints outside of the scene are at its origin", &name);
             (None, Mat4::IDENTITY)
         });
-        let inverse_bind = inverse.as_ref().map_or(Mat4::IDENTITY, |list| Mat4::from_cols_array(&list[i]));
-        Joint { mover, transform, inverse_bind }
+        let inverse_bind = inverse
+            .as_ref()
+            .map_or(Mat4::IDENTITY, |list| Mat4::from_cols_array(&list[i]));
+        Joint {
+            mover,
+            transform,
+            inverse_bind,
+        }
     };
     Ok(skin.joints().enumerate().map(joint).collect())
 }

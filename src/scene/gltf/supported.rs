@@ -29,16 +29,25 @@ const READ: [&str; 18] = [
 ];
 
 /// Compressions that a file may use next to uncompressed data, which is read; and how to undo each.
-const COMPRESSED: [(&str, &str); 1] =
-    [("KHR_draco_mesh_compression", "Convert it with glTF Transform: npx @gltf-transform/cli copy IN.glb OUT.glb")];
+const COMPRESSED: [(&str, &str); 1] = [(
+    "KHR_draco_mesh_compression",
+    "Convert it with glTF Transform: npx @gltf-transform/cli copy IN.glb OUT.glb",
+)];
 
 /// Lines about extensions that are not read, for files with very many.
 const LINES: usize = 20;
 
 /// Fails on a required extension that is not read, with a way on.
 pub(super) fn check_required(file: &Value) -> Result<(), String> {
-    let missing: Vec<&str> = names(file, "extensionsRequired").filter(|name| !READ.contains(name)).collect();
-    let way = |name: &&str| COMPRESSED.iter().find(|(known, _)| known == name).map(|(_, way)| *way);
+    let missing: Vec<&str> = names(file, "extensionsRequired")
+        .filter(|name| !READ.contains(name))
+        .collect();
+    let way = |name: &&str| {
+        COMPRESSED
+            .iter()
+            .find(|(known, _)| known == name)
+            .map(|(_, way)| *way)
+    };
     let mut ways: Vec<&str> = missing.iter().filter_map(way).collect();
     ways.dedup();
     let left = missing.iter().any(|name| way(name).is_none());
@@ -47,31 +56,54 @@ pub(super) fn check_required(file: &Value) -> Result<(), String> {
     }
     match missing.as_slice() {
         [] => Ok(()),
-        list => Err(format!("it requires {}, which is not read. {}", list.join(" and "), ways.join(". "))),
+        list => Err(format!(
+            "it requires {}, which is not read. {}",
+            list.join(" and "),
+            ways.join(". ")
+        )),
     }
 }
 
 /// Warns of used extensions that are not read. Material extensions are left to [`super::extensions`].
 pub(super) fn warn_of_used(file: &Value, warnings: &mut Warnings) {
     let quiet = |name: &&str| {
-        READ.contains(name) || COMPRESSED.iter().any(|(known, _)| known == name) || name.starts_with("KHR_materials_")
+        READ.contains(name)
+            || COMPRESSED.iter().any(|(known, _)| known == name)
+            || name.starts_with("KHR_materials_")
     };
-    let mut unread: Vec<&str> = names(file, "extensionsUsed").filter(|name| !quiet(name)).collect();
+    let mut unread: Vec<&str> = names(file, "extensionsUsed")
+        .filter(|name| !quiet(name))
+        .collect();
     unread.sort_unstable();
     unread.dedup();
     for name in unread.iter().take(LINES) {
         warnings.add(format!("it uses {name}, which is left out"), "");
     }
     if let Some(more) = unread.len().checked_sub(LINES + 1) {
-        warnings.add(format!("it uses {} more extensions, which are left out", more + 1), "");
+        warnings.add(
+            format!("it uses {} more extensions, which are left out", more + 1),
+            "",
+        );
     }
-    let variants = file.pointer("/extensions/KHR_materials_variants/variants").and_then(Value::as_array);
+    let variants = file
+        .pointer("/extensions/KHR_materials_variants/variants")
+        .and_then(Value::as_array);
     for variant in variants.into_iter().flatten() {
-        let name = variant.get("name").and_then(Value::as_str).unwrap_or_default();
-        warnings.add("variants of materials are left out: the default materials are shown", name);
+        let name = variant
+            .get("name")
+            .and_then(Value::as_str)
+            .unwrap_or_default();
+        warnings.add(
+            "variants of materials are left out: the default materials are shown",
+            name,
+        );
     }
 }
 
 fn names<'a>(file: &'a Value, list: &str) -> impl Iterator<Item = &'a str> {
-    file.get(list).and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str)
+    file.get(list)
+        .and_then(Value::as_array)
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_str)
 }

@@ -51,7 +51,11 @@ impl Mesh {
                 }
             }
             let corners = |t: usize| {
-                triangles[t].map(|i| self.vertices.get(i as usize).map_or(Vec3::ZERO, |v| v.position.into()))
+                triangles[t].map(|i| {
+                    self.vertices
+                        .get(i as usize)
+                        .map_or(Vec3::ZERO, |v| v.position.into())
+                })
             };
             let mut bounds = (Vec3::INFINITY, Vec3::NEG_INFINITY);
             let mut volume = 0.0; // six times that, positive where the first one's front is outside
@@ -63,7 +67,11 @@ impl Mesh {
             }
             if closed && volume != 0.0 && (bounds.1 - bounds.0).length() <= longest {
                 for (triangle, turn) in part {
-                    outsides[triangle] = Some(if turn == (volume > 0.0) { Side::Front } else { Side::Back });
+                    outsides[triangle] = Some(if turn == (volume > 0.0) {
+                        Side::Front
+                    } else {
+                        Side::Back
+                    });
                 }
             }
         }
@@ -78,7 +86,9 @@ impl Mesh {
             .iter()
             .map(|v| {
                 let next = places.len();
-                *places.entry(v.position.map(|x| (x + 0.0).to_bits())).or_insert(next)
+                *places
+                    .entry(v.position.map(|x| (x + 0.0).to_bits()))
+                    .or_insert(next)
             })
             .collect();
         let edges_of = |t: &[u32; 3]| {
@@ -90,14 +100,21 @@ impl Mesh {
         let mut edges: HashMap<(usize, usize), Vec<(usize, bool)>> = HashMap::new();
         for (number, triangle) in triangles.iter().enumerate() {
             for (from, to) in edges_of(triangle) {
-                edges.entry((from.min(to), from.max(to))).or_default().push((number, from < to));
+                edges
+                    .entry((from.min(to), from.max(to)))
+                    .or_default()
+                    .push((number, from < to));
             }
         }
-        let across =
-            |number: usize, (from, to): (usize, usize)| match edges.get(&(from.min(to), from.max(to)))?.as_slice() {
-                [(one, a), (two, b)] if one != two => Some((if *one == number { *two } else { *one }, a != b)),
-                _ => None,
-            };
+        let across = |number: usize, (from, to): (usize, usize)| match edges
+            .get(&(from.min(to), from.max(to)))?
+            .as_slice()
+        {
+            [(one, a), (two, b)] if one != two => {
+                Some((if *one == number { *two } else { *one }, a != b))
+            }
+            _ => None,
+        };
         let of = |(number, triangle)| edges_of(triangle).map(|edge| across(number, edge));
         triangles.iter().enumerate().map(of).collect()
     }

@@ -38,9 +38,14 @@ impl Dropped {
         if self.not_finite + self.no_area == 0 {
             return None;
         }
-        let kinds = [(self.not_finite, "with NaN or infinite vertices"), (self.no_area, "without area")];
+        let kinds = [
+            (self.not_finite, "with NaN or infinite vertices"),
+            (self.no_area, "without area"),
+        ];
         let some = kinds.iter().filter(|(count, _)| *count > 0);
-        let list: Vec<String> = some.map(|(count, what)| format!("{count} triangles {what}")).collect();
+        let list: Vec<String> = some
+            .map(|(count, what)| format!("{count} triangles {what}"))
+            .collect();
         Some(format!("{file}: dropped {}", list.join(" and ")))
     }
 }
@@ -52,7 +57,10 @@ pub(super) fn prepare_all(
     progress: Progress,
 ) -> Result<(Vec<Mesh>, Dropped), String> {
     let (prepared, dropped) = prepare_rigged(raw, materials, progress)?;
-    Ok((prepared.into_iter().map(|(mesh, _)| mesh).collect(), dropped))
+    Ok((
+        prepared.into_iter().map(|(mesh, _)| mesh).collect(),
+        dropped,
+    ))
 }
 
 /// A mesh, and the sources of its vertices if it deforms.
@@ -64,7 +72,13 @@ pub(super) fn prepare_rigged(
     materials: &[Material],
     progress: Progress,
 ) -> Result<(Vec<Rigged>, Dropped), String> {
-    let one = |raw| if progress.stopped() { Err(String::new()) } else { prepare(raw, materials) };
+    let one = |raw| {
+        if progress.stopped() {
+            Err(String::new())
+        } else {
+            prepare(raw, materials)
+        }
+    };
     let prepared: Result<Vec<_>, String> = raw.into_par_iter().map(one).collect();
     let mut total = Dropped::default();
     let mut meshes = Vec::new();
@@ -77,7 +91,12 @@ pub(super) fn prepare_rigged(
 }
 
 fn prepare(raw: RawMesh, materials: &[Material]) -> Result<(Mesh, Vec<u32>, Dropped), String> {
-    let RawMesh { mut mesh, mut sources, has_normals, has_tangents } = raw;
+    let RawMesh {
+        mut mesh,
+        mut sources,
+        has_normals,
+        has_tangents,
+    } = raw;
     check_indices(&mesh, materials.len())?;
     // A triangle without area may have one in another pose.
     let deforms = !sources.is_empty();
@@ -89,8 +108,14 @@ fn prepare(raw: RawMesh, materials: &[Material]) -> Result<(Mesh, Vec<u32>, Drop
     } else {
         normals::generate(&mut mesh);
     }
-    let used = mesh.submeshes.iter().map(|p| &materials[p.material as usize]);
-    let normal_map = used.filter(|m| m.normal_texture.is_some()).map(|m| m.lookups.normal).next();
+    let used = mesh
+        .submeshes
+        .iter()
+        .map(|p| &materials[p.material as usize]);
+    let normal_map = used
+        .filter(|m| m.normal_texture.is_some())
+        .map(|m| m.lookups.normal)
+        .next();
     if has_tangents {
         tangents::repair(&mut mesh);
     } else if let Some(lookup) = normal_map {
@@ -132,9 +157,11 @@ fn drop_bad_triangles(mesh: &mut Mesh, keep_flat: bool) -> Dropped {
     let mut kept = Vec::with_capacity(mesh.indices.len());
     for submesh in &mut mesh.submeshes {
         let first = kept.len();
-        let range = submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
+        let range =
+            submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
         for triangle in mesh.indices[range].as_chunks::<3>().0 {
-            let corner = triangle.map(|i| DVec3::from_array(mesh.vertices[i as usize].position.map(f64::from)));
+            let corner = triangle
+                .map(|i| DVec3::from_array(mesh.vertices[i as usize].position.map(f64::from)));
             if corner.iter().any(|p| !p.is_finite()) {
                 dropped.not_finite += 1;
             } else if !keep_flat && !has_area(corner) {
@@ -153,8 +180,15 @@ fn drop_bad_triangles(mesh: &mut Mesh, keep_flat: bool) -> Dropped {
 
 /// False for points and lines: the height is below 1e-9 of the longest edge (f64, so thin needles survive).
 fn has_area(corner: [DVec3; 3]) -> bool {
-    let (ab, ac, bc) = (corner[1] - corner[0], corner[2] - corner[0], corner[2] - corner[1]);
-    let longest = ab.length_squared().max(ac.length_squared()).max(bc.length_squared());
+    let (ab, ac, bc) = (
+        corner[1] - corner[0],
+        corner[2] - corner[0],
+        corner[2] - corner[1],
+    );
+    let longest = ab
+        .length_squared()
+        .max(ac.length_squared())
+        .max(bc.length_squared());
     ab.cross(ac).length() > 1e-9 * longest
 }
 
@@ -189,7 +223,9 @@ fn clear_bad_attributes(mesh: &mut Mesh) {
             }
         }
         // glTF 2.0, 3.7.2.1: colours are clamped.
-        vertex.color = vertex.color.map(|c| if c.is_nan() { 1.0 } else { c.clamp(0.0, 1.0) });
+        vertex.color = vertex
+            .color
+            .map(|c| if c.is_nan() { 1.0 } else { c.clamp(0.0, 1.0) });
         if vertex.normal.iter().any(|c| !c.is_finite()) {
             vertex.normal = [0.0; 3];
         }
@@ -206,9 +242,13 @@ pub(super) fn weld(corners: &[Vertex]) -> (Vec<Vertex>, Vec<u32>) {
 }
 
 /// [`weld`] of corners with sources, which must be equal too; an empty list is one source. With the sources of vertices.
-pub(super) fn weld_sources(corners: &[Vertex], sources: &[u32]) -> (Vec<Vertex>, Vec<u32>, Vec<u32>) {
+pub(super) fn weld_sources(
+    corners: &[Vertex],
+    sources: &[u32],
+) -> (Vec<Vertex>, Vec<u32>, Vec<u32>) {
     const BYTES: usize = size_of::<Vertex>();
-    let mut seen: HashMap<([u8; BYTES], Option<u32>), u32> = HashMap::with_capacity(corners.len() / 3);
+    let mut seen: HashMap<([u8; BYTES], Option<u32>), u32> =
+        HashMap::with_capacity(corners.len() / 3);
     let (mut vertices, mut kept) = (Vec::new(), Vec::new());
     let indices = corners.iter().enumerate().map(|(i, corner)| {
         let (bytes, source): ([u8; BYTES], _) = (bytemuck::cast(*corner), sources.get(i).copied());
@@ -225,10 +265,19 @@ pub(super) fn weld_sources(corners: &[Vertex], sources: &[u32]) -> (Vec<Vertex>,
 /// A vertex of its own for each corner.
 pub(super) fn unweld(raw: &mut RawMesh) {
     let RawMesh { mesh, sources, .. } = raw;
-    let corners = mesh.indices.iter().map(|&i| mesh.vertices.get(i as usize).copied());
+    let corners = mesh
+        .indices
+        .iter()
+        .map(|&i| mesh.vertices.get(i as usize).copied());
     // A mesh with indices outside of it is left to `prepare_all`.
-    let Some(corners) = corners.collect::<Option<Vec<Vertex>>>() else { return };
-    *sources = mesh.indices.iter().filter_map(|&i| sources.get(i as usize).copied()).collect();
+    let Some(corners) = corners.collect::<Option<Vec<Vertex>>>() else {
+        return;
+    };
+    *sources = mesh
+        .indices
+        .iter()
+        .filter_map(|&i| sources.get(i as usize).copied())
+        .collect();
     mesh.indices = (0..corners.len() as u32).collect();
     mesh.vertices = corners;
 }

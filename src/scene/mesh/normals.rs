@@ -36,8 +36,13 @@ pub(super) fn repair(mesh: &mut Mesh) {
 
 /// Gives every corner the normal of its face. Leaves a mesh with indices outside of it to [`super::prepare_all`].
 pub(in crate::scene) fn flat(mesh: &mut Mesh) {
-    let corners = mesh.indices.iter().map(|&i| mesh.vertices.get(i as usize).copied());
-    let Some(mut corners) = corners.collect::<Option<Vec<Vertex>>>() else { return };
+    let corners = mesh
+        .indices
+        .iter()
+        .map(|&i| mesh.vertices.get(i as usize).copied());
+    let Some(mut corners) = corners.collect::<Option<Vec<Vertex>>>() else {
+        return;
+    };
     flatten(&mut corners);
     (mesh.vertices, mesh.indices) = weld(&corners);
 }
@@ -46,18 +51,37 @@ pub(in crate::scene) fn flat(mesh: &mut Mesh) {
 pub(in crate::scene) fn flatten(corners: &mut [Vertex]) {
     for triangle in corners.as_chunks_mut::<3>().0 {
         let normal = face_normal(triangle.map(|v| v.position)).to_array();
-        triangle.iter_mut().for_each(|corner| corner.normal = normal);
+        triangle
+            .iter_mut()
+            .for_each(|corner| corner.normal = normal);
     }
 }
 
 /// Smooth normals weighted by corner angle, over faces that meet at 60 degrees or less.
 pub(super) fn generate(mesh: &mut Mesh) {
-    let mut corners: Vec<Vertex> = mesh.indices.iter().map(|&i| mesh.vertices[i as usize]).collect();
-    let faces: Vec<Vec3> = corners.as_chunks::<3>().0.iter().map(|t| face_normal(t.map(|v| v.position))).collect();
-    let angles: Vec<f32> = corners.as_chunks::<3>().0.iter().flat_map(corner_angles).collect();
+    let mut corners: Vec<Vertex> = mesh
+        .indices
+        .iter()
+        .map(|&i| mesh.vertices[i as usize])
+        .collect();
+    let faces: Vec<Vec3> = corners
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .map(|t| face_normal(t.map(|v| v.position)))
+        .collect();
+    let angles: Vec<f32> = corners
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .flat_map(corner_angles)
+        .collect();
     let mut at_point: HashMap<[u32; 3], Vec<u32>> = HashMap::with_capacity(mesh.vertices.len());
     for (i, corner) in corners.iter().enumerate() {
-        at_point.entry(point_key(corner.position)).or_default().push(i as u32);
+        at_point
+            .entry(point_key(corner.position))
+            .or_default()
+            .push(i as u32);
     }
     for group in at_point.values() {
         for &i in group {
@@ -65,7 +89,11 @@ pub(super) fn generate(mesh: &mut Mesh) {
             let near = |j: &&u32| !is_creased(faces[**j as usize / 3], own);
             let sum: Vec3 = match group.len() > MAX_VALENCE {
                 true => own,
-                false => group.iter().filter(near).map(|&j| faces[j as usize / 3] * angles[j as usize]).sum(),
+                false => group
+                    .iter()
+                    .filter(near)
+                    .map(|&j| faces[j as usize / 3] * angles[j as usize])
+                    .sum(),
             };
             corners[i as usize].normal = sum.normalize_or(own).to_array();
         }
@@ -88,7 +116,10 @@ pub(in crate::scene) fn corner_angles(triangle: &[Vertex; 3]) -> [f32; 3] {
     let p = triangle.map(|v| Vec3::from_array(v.position));
     let angle = |i: usize| {
         let (u, v) = (p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]);
-        u.normalize_or_zero().dot(v.normalize_or_zero()).clamp(-1.0, 1.0).acos()
+        u.normalize_or_zero()
+            .dot(v.normalize_or_zero())
+            .clamp(-1.0, 1.0)
+            .acos()
     };
     [angle(0), angle(1), angle(2)]
 }

@@ -10,10 +10,21 @@ use glam::Vec3;
 /// MikkTSpace's bitangent points along increasing v, which is down in the picture (glTF 2.0, 3.8.3). Normal maps have
 /// +y up (glTF 2.0, `material.normalTexture`), so the sign is negated.
 pub(super) fn generate(mesh: &mut Mesh, sources: &mut Vec<u32>, second_set: bool) {
-    let corners = mesh.indices.iter().map(|&i| mesh.vertices[i as usize]).collect();
-    let mut soup = Soup { corners, second_set };
+    let corners = mesh
+        .indices
+        .iter()
+        .map(|&i| mesh.vertices[i as usize])
+        .collect();
+    let mut soup = Soup {
+        corners,
+        second_set,
+    };
     if bevy_mikktspace::generate_tangents(&mut soup).is_ok() && !soup.corners.is_empty() {
-        let of_corner: Vec<u32> = mesh.indices.iter().filter_map(|&i| sources.get(i as usize).copied()).collect();
+        let of_corner: Vec<u32> = mesh
+            .indices
+            .iter()
+            .filter_map(|&i| sources.get(i as usize).copied())
+            .collect();
         (mesh.vertices, mesh.indices, *sources) = weld_sources(&soup.corners, &of_corner);
     }
     repair(mesh);
@@ -40,7 +51,10 @@ pub(super) fn any(mesh: &mut Mesh) {
 }
 
 fn any_tangent(normal: [f32; 3]) -> [f32; 4] {
-    Vec3::from_array(normal).any_orthonormal_vector().extend(1.0).to_array()
+    Vec3::from_array(normal)
+        .any_orthonormal_vector()
+        .extend(1.0)
+        .to_array()
 }
 
 struct Soup {
@@ -64,7 +78,11 @@ impl Geometry for Soup {
     }
     fn tex_coord(&self, face: usize, vertex: usize) -> [f32; 2] {
         let corner = &self.corners[face * 3 + vertex];
-        if self.second_set { corner.uv_second } else { corner.uv }
+        if self.second_set {
+            corner.uv_second
+        } else {
+            corner.uv
+        }
     }
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, vertex: usize) {
         // Where a triangle without area has no neighbour to take it from there is none: `repair` makes one.

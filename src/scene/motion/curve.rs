@@ -35,10 +35,18 @@ impl<T: Value> Curve<T> {
     /// None where there is no key, a time or value is not finite, times do not rise, or there is not a value (three of cubic
     /// curves) for each time.
     pub fn new(times: Vec<f32>, values: Vec<T>, interpolation: Interpolation) -> Option<Curve<T>> {
-        let each = if interpolation == Interpolation::Cubic { 3 } else { 1 };
+        let each = if interpolation == Interpolation::Cubic {
+            3
+        } else {
+            1
+        };
         let fits = !times.is_empty() && values.len() == times.len().checked_mul(each)?;
         let finite = times.iter().all(|t| t.is_finite()) && values.iter().all(|v| v.is_finite());
-        (fits && finite && times.is_sorted()).then_some(Curve { times, values, interpolation })
+        (fits && finite && times.is_sorted()).then_some(Curve {
+            times,
+            values,
+            interpolation,
+        })
     }
 
     /// Its values times a factor, if they stay finite.
@@ -70,14 +78,22 @@ impl<T: Value> Curve<T> {
         let next = self.times.partition_point(|t| *t <= time);
         let (a, b) = (next.saturating_sub(1), next.min(self.times.len() - 1));
         let span = self.times[b] - self.times[a];
-        let s = if span > 0.0 { ((time - self.times[a]) / span).clamp(0.0, 1.0) } else { 0.0 };
+        let s = if span > 0.0 {
+            ((time - self.times[a]) / span).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
         match self.interpolation {
             Interpolation::Step => self.values[a],
             Interpolation::Linear => self.values[a].between(self.values[b], s),
             Interpolation::Cubic => {
                 let (s2, s3) = (s * s, s * s * s);
-                let weights =
-                    [2.0 * s3 - 3.0 * s2 + 1.0, span * (s3 - 2.0 * s2 + s), 3.0 * s2 - 2.0 * s3, span * (s3 - s2)];
+                let weights = [
+                    2.0 * s3 - 3.0 * s2 + 1.0,
+                    span * (s3 - 2.0 * s2 + s),
+                    3.0 * s2 - 2.0 * s3,
+                    span * (s3 - s2),
+                ];
                 let keys = [3 * a + 1, 3 * a + 2, 3 * b + 1, 3 * b].map(|i| self.values[i]);
                 T::sum(keys, weights)
             }
@@ -115,7 +131,11 @@ impl Value for Quat {
         self.slerp(other, s)
     }
     fn sum(values: [Quat; 4], weights: [f32; 4]) -> Quat {
-        let sum: Vec4 = values.into_iter().zip(weights).map(|(q, w)| Vec4::from(q) * w).sum();
+        let sum: Vec4 = values
+            .into_iter()
+            .zip(weights)
+            .map(|(q, w)| Vec4::from(q) * w)
+            .sum();
         sum.try_normalize().map_or(Quat::IDENTITY, Quat::from_vec4)
     }
     fn is_finite(self) -> bool {
@@ -131,7 +151,10 @@ mod tests {
     fn cubic_curves_pass_their_keys_with_their_tangents() {
         // x^3 from 1 to 3: its own Hermite spline.
         let (f, slope) = (|x: f32| x * x * x, |x: f32| 3.0 * x * x);
-        let values = [1.0, 3.0].into_iter().flat_map(|x| [slope(x), f(x), slope(x)]).collect();
+        let values = [1.0, 3.0]
+            .into_iter()
+            .flat_map(|x| [slope(x), f(x), slope(x)])
+            .collect();
         let curve = Curve::new(vec![1.0, 3.0], values, Interpolation::Cubic).unwrap();
         for x in [1.0, 1.25, 2.0, 2.9, 3.0] {
             assert!((curve.at(x) - f(x)).abs() < 1e-4, "{x}: {}", curve.at(x));
@@ -141,10 +164,21 @@ mod tests {
 
     #[test]
     fn steps_hold_and_what_is_no_curve_is_refused() {
-        let curve = Curve::new(vec![0.0, 1.0, 2.0], vec![5.0, 6.0, 7.0], Interpolation::Step).unwrap();
-        assert_eq!([-1.0, 0.0, 0.999, 1.0, 1.5, 2.0, 3.0].map(|t| curve.at(t)), [5.0, 5.0, 5.0, 6.0, 6.0, 7.0, 7.0]);
+        let curve = Curve::new(
+            vec![0.0, 1.0, 2.0],
+            vec![5.0, 6.0, 7.0],
+            Interpolation::Step,
+        )
+        .unwrap();
+        assert_eq!(
+            [-1.0, 0.0, 0.999, 1.0, 1.5, 2.0, 3.0].map(|t| curve.at(t)),
+            [5.0, 5.0, 5.0, 6.0, 6.0, 7.0, 7.0]
+        );
         let none = |times: &[f32], values: &[f32]| {
-            assert_eq!(Curve::new(times.to_vec(), values.to_vec(), Interpolation::Linear), None);
+            assert_eq!(
+                Curve::new(times.to_vec(), values.to_vec(), Interpolation::Linear),
+                None
+            );
         };
         none(&[], &[]);
         none(&[0.0, 1.0], &[1.0]);

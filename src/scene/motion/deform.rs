@@ -78,8 +78,11 @@ struct Pose {
 impl Scene {
     /// All meshes as they are at a time in seconds: those that deform are posed.
     pub fn posed_meshes(&self, time: f32) -> Vec<std::borrow::Cow<'_, [Vertex]>> {
-        let mut meshes: Vec<_> =
-            self.meshes.iter().map(|m| std::borrow::Cow::Borrowed(m.vertices.as_slice())).collect();
+        let mut meshes: Vec<_> = self
+            .meshes
+            .iter()
+            .map(|m| std::borrow::Cow::Borrowed(m.vertices.as_slice()))
+            .collect();
         if self.deformers.is_empty() {
             return meshes;
         }
@@ -100,7 +103,10 @@ impl Deformer {
         let mut vertices = mesh.vertices.clone();
         let pose = self.pose(frames, time);
         let own = vertices.len().min(self.rest.len());
-        vertices[..own].par_iter_mut().enumerate().for_each(|(i, vertex)| self.place(i, vertex, &pose));
+        vertices[..own]
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(i, vertex)| self.place(i, vertex, &pose));
         for (i, [a, b]) in (self.rest.len()..).zip(&self.halves) {
             if let (Some(a), Some(b)) = (vertices.get(*a as usize), vertices.get(*b as usize)) {
                 let middle = halfway(a, b);
@@ -110,9 +116,18 @@ impl Deformer {
             }
         }
         if !self.flat.is_empty() {
-            for triangle in mesh.indices.as_chunks::<3>().0.iter().filter(|t| self.is_flat(t[0])) {
-                let normal = face_normal(triangle.map(|i| vertices[i as usize].position)).to_array();
-                triangle.iter().for_each(|i| vertices[*i as usize].normal = normal);
+            for triangle in mesh
+                .indices
+                .as_chunks::<3>()
+                .0
+                .iter()
+                .filter(|t| self.is_flat(t[0]))
+            {
+                let normal =
+                    face_normal(triangle.map(|i| vertices[i as usize].position)).to_array();
+                triangle
+                    .iter()
+                    .for_each(|i| vertices[*i as usize].normal = normal);
             }
         }
         vertices
@@ -121,7 +136,10 @@ impl Deformer {
     fn is_flat(&self, vertex: u32) -> bool {
         let mut vertex = vertex as usize;
         // A half comes after its two ends.
-        while let Some([first, _]) = vertex.checked_sub(self.rest.len()).and_then(|half| self.halves.get(half)) {
+        while let Some([first, _]) = vertex
+            .checked_sub(self.rest.len())
+            .and_then(|half| self.halves.get(half))
+        {
             if *first as usize >= vertex {
                 return false;
             }
@@ -145,18 +163,32 @@ impl Deformer {
         let mut normal = Vec3::from_array(rest.normal);
         let [x, y, z, sign] = rest.tangent;
         let mut tangent = Vec3::new(x, y, z);
-        for (morph, weight) in self.morphs.iter().zip(&pose.weights).filter(|(_, w)| **w != 0.0) {
-            let add = |sum: &mut Vec3, list: &[Vec3]| *sum += list.get(i).copied().unwrap_or(Vec3::ZERO) * *weight;
+        for (morph, weight) in self
+            .morphs
+            .iter()
+            .zip(&pose.weights)
+            .filter(|(_, w)| **w != 0.0)
+        {
+            let add = |sum: &mut Vec3, list: &[Vec3]| {
+                *sum += list.get(i).copied().unwrap_or(Vec3::ZERO) * *weight
+            };
             add(&mut position, &morph.positions);
             add(&mut normal, &morph.normals);
             add(&mut tangent, &morph.tangents);
         }
         let influences = self.influenced.get(i).cloned().unwrap_or(0..0);
-        let influences = self.influences.get(influences.start as usize..influences.end as usize).unwrap_or_default();
+        let influences = self
+            .influences
+            .get(influences.start as usize..influences.end as usize)
+            .unwrap_or_default();
         if !influences.is_empty() {
             let mut skin = Mat4::ZERO;
             for influence in influences {
-                let joint = pose.joints.get(influence.joint as usize).copied().unwrap_or(Mat4::IDENTITY);
+                let joint = pose
+                    .joints
+                    .get(influence.joint as usize)
+                    .copied()
+                    .unwrap_or(Mat4::IDENTITY);
                 skin += joint * influence.weight;
             }
             position = skin.transform_point3(position);
@@ -166,7 +198,8 @@ impl Deformer {
         }
         vertex.position = position.to_array();
         vertex.normal = normal.try_normalize().map_or(rest.normal, |n| n.to_array());
-        let tangent = tangent.normalize_or(Vec3::from_array(vertex.normal).any_orthonormal_vector());
+        let tangent =
+            tangent.normalize_or(Vec3::from_array(vertex.normal).any_orthonormal_vector());
         vertex.tangent = Vec4::from((tangent, sign)).to_array();
     }
 }
@@ -175,5 +208,9 @@ impl Deformer {
 fn cofactors(m: &Mat3) -> Mat3 {
     let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
     let all = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-    if m.determinant() < 0.0 { all * -1.0 } else { all }
+    if m.determinant() < 0.0 {
+        all * -1.0
+    } else {
+        all
+    }
 }

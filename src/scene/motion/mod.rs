@@ -55,7 +55,11 @@ pub struct Rest {
 
 impl Default for Rest {
     fn default() -> Self {
-        Rest { translation: Vec3::ZERO, rotation: Quat::IDENTITY, scale: Vec3::ONE }
+        Rest {
+            translation: Vec3::ZERO,
+            rotation: Quat::IDENTITY,
+            scale: Vec3::ONE,
+        }
     }
 }
 
@@ -77,7 +81,11 @@ impl Track {
         let last = times.last().copied().filter(|last| repeat && *last > 0.0);
         let line = Interpolation::Linear;
         Track {
-            translation: Curve::new(times.clone(), keys.iter().map(|k| k.translation).collect(), line),
+            translation: Curve::new(
+                times.clone(),
+                keys.iter().map(|k| k.translation).collect(),
+                line,
+            ),
             rotation: Curve::new(times, keys.iter().map(|k| k.rotation).collect(), line),
             period: last,
             ..Track::default()
@@ -96,15 +104,23 @@ impl Track {
     pub fn at(&self, time: f32) -> Mat4 {
         let time = wrapped(time, self.period);
         let scale = self.scale.as_ref().map_or(self.rest.scale, |c| c.at(time));
-        let rotation = self.rotation.as_ref().map_or(self.rest.rotation, |c| c.at(time));
-        let translation = self.translation.as_ref().map_or(self.rest.translation, |c| c.at(time));
+        let rotation = self
+            .rotation
+            .as_ref()
+            .map_or(self.rest.rotation, |c| c.at(time));
+        let translation = self
+            .translation
+            .as_ref()
+            .map_or(self.rest.translation, |c| c.at(time));
         Mat4::from_scale_rotation_translation(scale, rotation, translation)
     }
 }
 
 /// A time within a period.
 fn wrapped(time: f32, period: Option<f32>) -> f32 {
-    period.filter(|p| *p > 0.0 && time.is_finite()).map_or(time, |period| time.rem_euclid(period))
+    period
+        .filter(|p| *p > 0.0 && time.is_finite())
+        .map_or(time, |period| time.rem_euclid(period))
 }
 
 fn sorted(mut times: Vec<f32>) -> Vec<f32> {
@@ -122,14 +138,20 @@ impl Scene {
     /// Instances that move or change their shape.
     pub fn animated(&self) -> impl Iterator<Item = &Instance> {
         let deforming: HashSet<u32> = self.deformers.iter().map(|d| d.mesh).collect();
-        self.instances.iter().filter(move |i| i.mover.is_some() || deforming.contains(&i.mesh))
+        self.instances
+            .iter()
+            .filter(move |i| i.mover.is_some() || deforming.contains(&i.mesh))
     }
 
     /// All movers' frames in the world at a time in seconds.
     pub fn mover_frames(&self, time: f32) -> Vec<Mat4> {
         let mut frames: Vec<Mat4> = Vec::with_capacity(self.movers.len());
         for mover in &self.movers {
-            let parent = mover.parent.and_then(|p| frames.get(p as usize)).copied().unwrap_or(Mat4::IDENTITY);
+            let parent = mover
+                .parent
+                .and_then(|p| frames.get(p as usize))
+                .copied()
+                .unwrap_or(Mat4::IDENTITY);
             frames.push(parent * mover.placed * mover.track.at(time));
         }
         frames
@@ -137,14 +159,17 @@ impl Scene {
 
     /// Model to world at a time in seconds; nothing moves an instance that is not there.
     pub fn instance_transform(&self, instance: usize, time: f32) -> Mat4 {
-        let Some(instance) = self.instances.get(instance) else { return Mat4::IDENTITY };
+        let Some(instance) = self.instances.get(instance) else {
+            return Mat4::IDENTITY;
+        };
         self.moved(instance.mover, instance.transform, time)
     }
 
     /// The transform from a mover's frame to the world at a time in seconds, times `local`.
     pub(in crate::scene) fn moved(&self, mover: Option<u32>, local: Mat4, time: f32) -> Mat4 {
         let (mut world, mut next) = (local, mover);
-        while let Some((number, mover)) = next.and_then(|n| Some((n, self.movers.get(n as usize)?))) {
+        while let Some((number, mover)) = next.and_then(|n| Some((n, self.movers.get(n as usize)?)))
+        {
             world = mover.placed * mover.track.at(time) * world;
             next = mover.parent.filter(|p| *p < number);
         }
@@ -154,5 +179,7 @@ impl Scene {
 
 /// A transform in the frame of a mover as a transform in the world; without a mover it is in the world already.
 pub(crate) fn in_world(frames: &[Mat4], mover: Option<u32>, local: Mat4) -> Mat4 {
-    mover.and_then(|m| frames.get(m as usize)).map_or(local, |frame| *frame * local)
+    mover
+        .and_then(|m| frames.get(m as usize))
+        .map_or(local, |frame| *frame * local)
 }

@@ -39,13 +39,18 @@ impl Rig {
     pub fn push(&mut self, influences: &[Influence]) {
         let sum: f32 = influences.iter().map(|i| i.weight).sum();
         let start = self.influences.len() as u32;
-        self.influences.extend(influences.iter().map(|i| Influence { weight: i.weight / sum, ..*i }));
+        self.influences.extend(influences.iter().map(|i| Influence {
+            weight: i.weight / sum,
+            ..*i
+        }));
         self.influenced.push(start..self.influences.len() as u32);
     }
 
     fn of(&self, vertex: usize) -> &[Influence] {
         let range = self.influenced.get(vertex).cloned().unwrap_or(0..0);
-        self.influences.get(range.start as usize..range.end as usize).unwrap_or_default()
+        self.influences
+            .get(range.start as usize..range.end as usize)
+            .unwrap_or_default()
     }
 
     /// Adds the vertices of a primitive, each of a source in its rig, behind `before` others.
@@ -56,7 +61,9 @@ impl Rig {
         self.flat.resize(before + sources.len(), flat);
         let nothing = Rig::default();
         let from = primitive.unwrap_or(&nothing);
-        sources.iter().for_each(|source| self.push(from.of(*source as usize)));
+        sources
+            .iter()
+            .for_each(|source| self.push(from.of(*source as usize)));
         let count = self.morphs.len().max(from.morphs.len());
         self.morphs.resize(count, Morph::default());
         for (morph, from) in self.morphs.iter_mut().zip(&from.morphs) {
@@ -67,7 +74,11 @@ impl Rig {
             ] {
                 if !from.is_empty() {
                     list.resize(before, Vec3::ZERO);
-                    list.extend(sources.iter().map(|s| from.get(*s as usize).copied().unwrap_or_default()));
+                    list.extend(
+                        sources
+                            .iter()
+                            .map(|s| from.get(*s as usize).copied().unwrap_or_default()),
+                    );
                 }
             }
         }
@@ -84,16 +95,34 @@ pub(in crate::scene) fn attach(
 ) -> Result<(), String> {
     // Each mesh is itself for the first that poses it, unless something else shows it too.
     let posing: HashSet<usize> = posings.iter().map(|p| p.instance).collect();
-    let shown = scene.instances.iter().enumerate().filter(|(i, _)| !posing.contains(i));
+    let shown = scene
+        .instances
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| !posing.contains(i));
     let mut taken: HashSet<u32> = shown.map(|(_, instance)| instance.mesh).collect();
     let mut read: HashMap<u32, Mesh> = HashMap::new();
     let frames = scene.mover_frames(0.0);
-    for Posing { instance, joints, weights, period } in posings {
+    for Posing {
+        instance,
+        joints,
+        weights,
+        period,
+    } in posings
+    {
         let mesh = scene.instances[instance].mesh;
-        let Some(rig) = rigs.get(&(mesh as usize)) else { continue };
-        let own = if taken.insert(mesh) { mesh } else { scene.meshes.len() as u32 };
+        let Some(rig) = rigs.get(&(mesh as usize)) else {
+            continue;
+        };
+        let own = if taken.insert(mesh) {
+            mesh
+        } else {
+            scene.meshes.len() as u32
+        };
         // The mesh in its place may have been posed.
-        let rest = read.entry(mesh).or_insert_with(|| scene.meshes[mesh as usize].clone());
+        let rest = read
+            .entry(mesh)
+            .or_insert_with(|| scene.meshes[mesh as usize].clone());
         if own != mesh {
             let left = room.checked_sub(rest.vertices.len() + rest.indices.len());
             room = left.ok_or("its skins and weights make very many copies of its meshes")?;
@@ -109,13 +138,25 @@ pub(in crate::scene) fn attach(
             weights,
             period,
             joints,
-            influences: if skinned { rig.influences.clone() } else { Vec::new() },
-            influenced: if skinned { rig.influenced.clone() } else { Vec::new() },
-            flat: if rig.flat.contains(&true) { rig.flat.clone() } else { Vec::new() },
+            influences: if skinned {
+                rig.influences.clone()
+            } else {
+                Vec::new()
+            },
+            influenced: if skinned {
+                rig.influenced.clone()
+            } else {
+                Vec::new()
+            },
+            flat: if rig.flat.contains(&true) {
+                rig.flat.clone()
+            } else {
+                Vec::new()
+            },
             ..Deformer::default()
         };
-        let moves =
-            deformer.joints.iter().any(|j| j.mover.is_some()) || deformer.weights.iter().any(|w| w.times().len() > 1);
+        let moves = deformer.joints.iter().any(|j| j.mover.is_some())
+            || deformer.weights.iter().any(|w| w.times().len() > 1);
         let posed = deformer.posed(&scene.meshes[own as usize], &frames, 0.0);
         if moves {
             deformer.bounds = scene.deformed_bounds(&deformer);

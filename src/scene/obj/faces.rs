@@ -28,21 +28,34 @@ pub(super) fn corner(word: &str, counts: Counts) -> Result<Read, String> {
     let mut parts = word.split('/');
     let mut number = || match parts.next() {
         None | Some("") => Ok(None),
-        Some(text) => text.parse::<i64>().map(Some).map_err(|_| format!("'{word}' is not a corner of a face")),
+        Some(text) => text
+            .parse::<i64>()
+            .map(Some)
+            .map_err(|_| format!("'{word}' is not a corner of a face")),
     };
     let (position, uv, normal) = (number()?, number()?, number()?);
     if parts.next().is_some() {
         return Err(format!("'{word}' has more than three numbers"));
     }
     let position = position.ok_or_else(|| format!("'{word}' names no vertex"))?;
-    let found = resolve(position, counts.positions).ok_or_else(|| missing(position, counts.positions))?;
-    let optional = |number: Option<i64>, count: usize| match number.map(|number| resolve(number, count)) {
-        None => (NONE, false),
-        Some(None) => (NONE, true),
-        Some(Some(index)) => (index, false),
-    };
-    let ((uv, no_uv), (normal, no_normal)) = (optional(uv, counts.uvs), optional(normal, counts.normals));
-    Ok((Corner { position: found, uv, normal }, [no_uv, no_normal]))
+    let found =
+        resolve(position, counts.positions).ok_or_else(|| missing(position, counts.positions))?;
+    let optional =
+        |number: Option<i64>, count: usize| match number.map(|number| resolve(number, count)) {
+            None => (NONE, false),
+            Some(None) => (NONE, true),
+            Some(Some(index)) => (index, false),
+        };
+    let ((uv, no_uv), (normal, no_normal)) =
+        (optional(uv, counts.uvs), optional(normal, counts.normals));
+    Ok((
+        Corner {
+            position: found,
+            uv,
+            normal,
+        },
+        [no_uv, no_normal],
+    ))
 }
 
 /// The message about a vertex that the file does not have.
@@ -66,8 +79,13 @@ mod tests {
 
     #[test]
     fn corners_have_many_forms() {
-        let counts = Counts { positions: 4, uvs: 3, normals: 2 };
-        let read = |word| corner(word, counts).map(|(c, wrong)| ([c.position, c.uv, c.normal], wrong));
+        let counts = Counts {
+            positions: 4,
+            uvs: 3,
+            normals: 2,
+        };
+        let read =
+            |word| corner(word, counts).map(|(c, wrong)| ([c.position, c.uv, c.normal], wrong));
         for (word, corner, wrong) in [
             ("1", [0, NONE, NONE], [false; 2]),
             ("+2/3/1", [1, 2, 0], [false; 2]),

@@ -62,13 +62,19 @@ pub(super) struct Geometry {
 impl Geometry {
     /// The corners of a face.
     pub fn corners_of(&self, face: usize) -> &[Corner] {
-        let begin = face.checked_sub(1).map_or(0, |before| self.faces[before].end as usize);
+        let begin = face
+            .checked_sub(1)
+            .map_or(0, |before| self.faces[before].end as usize);
         &self.corners[begin..self.faces[face].end as usize]
     }
 }
 
 /// Reads a file's text. Errors begin with the line.
-pub(super) fn read(text: &str, warnings: &mut Warnings, progress: Progress) -> Result<Geometry, String> {
+pub(super) fn read(
+    text: &str,
+    warnings: &mut Warnings,
+    progress: Progress,
+) -> Result<Geometry, String> {
     let mut reader = Reader::new(warnings);
     for (count, line) in lines(text).enumerate() {
         if count % LOOK == 0 && progress.stopped() {
@@ -76,9 +82,12 @@ pub(super) fn read(text: &str, warnings: &mut Warnings, progress: Progress) -> R
         }
         let (key, rest) = line.split();
         reader.number = line.number;
-        reader
-            .statement(&key, rest)
-            .map_err(|problem| format!("line {}: {problem}. Export it again, or correct the line", line.number))?;
+        reader.statement(&key, rest).map_err(|problem| {
+            format!(
+                "line {}: {problem}. Export it again, or correct the line",
+                line.number
+            )
+        })?;
     }
     reader.finish()
 }
@@ -132,34 +141,54 @@ impl Reader<'_> {
             "l" => self.left_out("lines (l) are left out: only faces are rendered"),
             "p" => self.left_out("points (p) are left out: only faces are rendered"),
             "vp" | "curv" | "curv2" | "surf" => {
-                self.left_out("curves and free-form surfaces are left out. Convert them to polygons");
+                self.left_out(
+                    "curves and free-form surfaces are left out. Convert them to polygons",
+                );
             }
             "call" | "csh" => self.left_out("commands and other files (call, csh) are left out"),
-            "maplib" | "usemap" => self.left_out("maplib and usemap are left out. Name maps in the material library"),
+            "maplib" | "usemap" => {
+                self.left_out("maplib and usemap are left out. Name maps in the material library")
+            }
             // Parts of the surfaces above, and settings of viewers.
-            "cstype" | "deg" | "bmat" | "step" | "parm" | "trim" | "hole" | "scrv" | "sp" | "end" | "con" | "mg"
-            | "bevel" | "c_interp" | "d_interp" | "lod" | "shadow_obj" | "trace_obj" | "ctech" | "stech" => {}
+            "cstype" | "deg" | "bmat" | "step" | "parm" | "trim" | "hole" | "scrv" | "sp"
+            | "end" | "con" | "mg" | "bevel" | "c_interp" | "d_interp" | "lod" | "shadow_obj"
+            | "trace_obj" | "ctech" | "stech" => {}
             _ => {
                 self.known -= 1;
                 self.unknown += 1;
-                self.warnings.add("lines with unknown keywords are left out", shown(key));
+                self.warnings
+                    .add("lines with unknown keywords are left out", shown(key));
             }
         }
         Ok(())
     }
 
     fn left_out(&mut self, what: &str) {
-        self.warnings.add(what, format_args!("line {}", self.number));
+        self.warnings
+            .add(what, format_args!("line {}", self.number));
     }
 
     fn vertex(&mut self, rest: &str) -> Result<(), String> {
         self.all.positions.push(numbers(rest, "a position", 3)?);
         let others: Vec<&str> = words(rest).skip(3).take(4).collect();
         // `x y z r g b`, or the same behind a weight.
-        let Some(color) = others.len().checked_sub(3).map(|weights| &others[weights..]) else { return Ok(()) };
-        match <[f32; 3]>::try_from(color.iter().filter_map(|word| word.parse().ok()).collect::<Vec<_>>()) {
+        let Some(color) = others
+            .len()
+            .checked_sub(3)
+            .map(|weights| &others[weights..])
+        else {
+            return Ok(());
+        };
+        match <[f32; 3]>::try_from(
+            color
+                .iter()
+                .filter_map(|word| word.parse().ok())
+                .collect::<Vec<_>>(),
+        ) {
             Ok(color) => {
-                self.all.colors.resize(self.all.positions.len() - 1, [1.0; 3]);
+                self.all
+                    .colors
+                    .resize(self.all.positions.len() - 1, [1.0; 3]);
                 self.all.colors.push(color);
             }
             Err(_) => self.left_out("colours of vertices that are not numbers are left out"),
@@ -168,7 +197,11 @@ impl Reader<'_> {
     }
 
     fn begin_object(&mut self, name: &str) {
-        self.object = if name.is_empty() { UNNAMED.into() } else { name.into() };
+        self.object = if name.is_empty() {
+            UNNAMED.into()
+        } else {
+            name.into()
+        };
         self.changed = true;
     }
 
@@ -189,8 +222,11 @@ impl Reader<'_> {
     }
 
     fn face(&mut self, rest: &str) -> Result<(), String> {
-        let counts =
-            Counts { positions: self.all.positions.len(), uvs: self.all.uvs.len(), normals: self.all.normals.len() };
+        let counts = Counts {
+            positions: self.all.positions.len(),
+            uvs: self.all.uvs.len(),
+            normals: self.all.normals.len(),
+        };
         let begin = self.all.corners.len();
         let mut wrong = [false; 2];
         for word in words(rest) {
@@ -206,11 +242,20 @@ impl Reader<'_> {
         if self.changed {
             self.changed = false;
             let (object, material) = (self.object.clone(), self.material);
-            self.all.pieces.push(Piece { object, material, first_face: self.all.faces.len() });
+            self.all.pieces.push(Piece {
+                object,
+                material,
+                first_face: self.all.faces.len(),
+            });
         }
-        let end = u32::try_from(self.all.corners.len()).map_err(|_| "the file has more than 2^32 corners")?;
+        let end = u32::try_from(self.all.corners.len())
+            .map_err(|_| "the file has more than 2^32 corners")?;
         let line = u32::try_from(self.number).unwrap_or(u32::MAX);
-        self.all.faces.push(Face { end, line, smoothing: self.smoothing });
+        self.all.faces.push(Face {
+            end,
+            line,
+            smoothing: self.smoothing,
+        });
         without(&mut self.all.corners[begin..], wrong, line, self.warnings);
         Ok(())
     }
@@ -218,12 +263,19 @@ impl Reader<'_> {
     /// Checks the numbers of corners against all that the file holds.
     fn finish(mut self) -> Result<Geometry, String> {
         if self.all.positions.is_empty() && self.unknown > self.known {
-            return Err("it holds nothing of the OBJ format. Check that the file is a Wavefront OBJ".into());
+            return Err(
+                "it holds nothing of the OBJ format. Check that the file is a Wavefront OBJ".into(),
+            );
         }
-        let counts = [self.all.positions.len(), self.all.uvs.len(), self.all.normals.len()];
+        let counts = [
+            self.all.positions.len(),
+            self.all.uvs.len(),
+            self.all.normals.len(),
+        ];
         let outside = |index: u32, count: usize| index != NONE && index as usize >= count;
         let mut begin = 0;
-        let grouped = !self.groups.is_empty() || self.all.faces.iter().any(|f| f.smoothing == Smoothing::Off);
+        let grouped =
+            !self.groups.is_empty() || self.all.faces.iter().any(|f| f.smoothing == Smoothing::Off);
         for face in &mut self.all.faces {
             let corners = &mut self.all.corners[begin..face.end as usize];
             begin = face.end as usize;
@@ -256,8 +308,10 @@ fn without(corners: &mut [Corner], wrong: [bool; 2], line: u32, warnings: &mut W
     }
     if wrong[1] {
         corners.iter_mut().for_each(|corner| corner.normal = NONE);
-        warnings
-            .add("faces name normals that the file does not hold: theirs are generated", format_args!("line {line}"));
+        warnings.add(
+            "faces name normals that the file does not hold: theirs are generated",
+            format_args!("line {line}"),
+        );
     }
 }
 
@@ -276,6 +330,10 @@ fn numbers<const N: usize>(rest: &str, what: &str, needed: usize) -> Result<[f32
 }
 
 fn not_a_number(word: &str, what: &str) -> String {
-    let hint = if word.contains(',') { " (decimals have a point)" } else { "" };
+    let hint = if word.contains(',') {
+        " (decimals have a point)"
+    } else {
+        ""
+    };
     format!("'{}' of {what} is not a number{hint}", shown(word))
 }

@@ -90,7 +90,11 @@ pub(super) fn load(
 ) -> Vec<Library> {
     let mut libraries = Vec::new();
     let mut seen = HashSet::new();
-    for path in entries.iter().flat_map(|entry| paths(entry, finder, warnings)).take(MAX_LIBRARIES).collect::<Vec<_>>()
+    for path in entries
+        .iter()
+        .flat_map(|entry| paths(entry, finder, warnings))
+        .take(MAX_LIBRARIES)
+        .collect::<Vec<_>>()
     {
         if !seen.insert(path.clone()) {
             continue;
@@ -103,13 +107,20 @@ pub(super) fn load(
                     ErrorKind::NotFound => "no such file".to_owned(),
                     _ => problem.to_string(),
                 };
-                let what = format!("material libraries cannot be read ({problem}): grey stands in for their materials");
+                let what = format!(
+                    "material libraries cannot be read ({problem}): grey stands in for their materials"
+                );
                 warnings.add(what, shown(&path.display().to_string()));
             }
         }
     }
     if entries.len() > MAX_LIBRARIES {
-        warnings.add(format!("more than {MAX_LIBRARIES} lines name material libraries: the rest is left out"), "");
+        warnings.add(
+            format!(
+                "more than {MAX_LIBRARIES} lines name material libraries: the rest is left out"
+            ),
+            "",
+        );
     }
     libraries
 }
@@ -124,7 +135,10 @@ fn paths(entry: &str, finder: &mut Finder, warnings: &mut Warnings) -> Vec<PathB
     if names.iter().all(|name| finder.look(name).1 == Found::No) {
         return vec![finder.find(entry, warnings)];
     }
-    names.iter().map(|name| finder.find(name, warnings)).collect()
+    names
+        .iter()
+        .map(|name| finder.find(name, warnings))
+        .collect()
 }
 
 /// Words, or texts in quotes.
@@ -133,7 +147,9 @@ fn names(entry: &str) -> Vec<&str> {
     let mut names = Vec::new();
     while !rest.is_empty() {
         let quoted = rest.strip_prefix('"').and_then(|text| text.split_once('"'));
-        let (name, after) = quoted.or_else(|| rest.split_once(char::is_whitespace)).unwrap_or((rest, ""));
+        let (name, after) = quoted
+            .or_else(|| rest.split_once(char::is_whitespace))
+            .unwrap_or((rest, ""));
         names.push(name);
         rest = after.trim_start();
     }
@@ -141,13 +157,21 @@ fn names(entry: &str) -> Vec<&str> {
 }
 
 fn read(path: PathBuf, text: &str) -> Library {
-    let mut library = Library { path, materials: Vec::new(), warnings: Warnings::default() };
+    let mut library = Library {
+        path,
+        materials: Vec::new(),
+        warnings: Warnings::default(),
+    };
     let mut unnamed = Definition::default();
     for line in lines(text) {
         let (key, rest) = line.split();
         if key == "newmtl" {
             let (name, whole) = (without_comment(rest).to_owned(), rest.to_owned());
-            library.materials.push(Definition { name, whole, values: BTreeMap::new() });
+            library.materials.push(Definition {
+                name,
+                whole,
+                values: BTreeMap::new(),
+            });
             continue;
         }
         let number = line.number;
@@ -159,28 +183,42 @@ fn read(path: PathBuf, text: &str) -> Library {
         }
     }
     if !unnamed.values.is_empty() {
-        library.warnings.add("statements before the first newmtl are left out", "");
+        library
+            .warnings
+            .add("statements before the first newmtl are left out", "");
     }
     library
 }
 
 /// A statement's value as it is to be read, or none where it is left out.
 fn check(key: &str, rest: &str, line: usize, warnings: &mut Warnings) -> Option<String> {
-    let title = |list: &[(&str, &'static str)]| list.iter().find(|(k, _)| *k == key).map(|(_, title)| *title);
+    let title = |list: &[(&str, &'static str)]| {
+        list.iter()
+            .find(|(k, _)| *k == key)
+            .map(|(_, title)| *title)
+    };
     if COLORS.contains(&key) {
         return color(key, rest, line, warnings);
     }
     if NUMBERS.contains(&key) {
-        let value = words(rest).find(|w| *w != "-halo").and_then(|word| word.parse::<f32>().ok());
+        let value = words(rest)
+            .find(|w| *w != "-halo")
+            .and_then(|word| word.parse::<f32>().ok());
         if value.is_none_or(|value| !value.is_finite()) {
-            warnings.add(format!("{} needs a number; the line is left out", cased(key)), At(line));
+            warnings.add(
+                format!("{} needs a number; the line is left out", cased(key)),
+                At(line),
+            );
             return None;
         }
         return value.map(|value| value.to_string());
     }
     if let Some(title) = title(&MAPS) {
         if super::maps::parse(rest).is_none() {
-            warnings.add(format!("{title} names no file; the line is left out"), At(line));
+            warnings.add(
+                format!("{title} names no file; the line is left out"),
+                At(line),
+            );
             return None;
         }
         return Some(rest.to_owned());
@@ -194,7 +232,10 @@ fn check(key: &str, rest: &str, line: usize, warnings: &mut Warnings) -> Option<
     match key {
         "pc" | "pcr" | "ps" | "aniso" | "anisor" if off => {}
         "map_aat" => {}
-        _ => warnings.add("lines with unknown keywords are left out", shown(&cased(key))),
+        _ => warnings.add(
+            "lines with unknown keywords are left out",
+            shown(&cased(key)),
+        ),
     }
     None
 }
@@ -207,17 +248,26 @@ fn color(key: &str, rest: &str, line: usize, warnings: &mut Warnings) -> Option<
         Some([grey]) => [*grey; 3],
         Some([r, g, b]) => [*r, *g, *b],
         _ => {
-            warnings.add(format!("{title} needs one number or three; the line is left out"), At(line));
+            warnings.add(
+                format!("{title} needs one number or three; the line is left out"),
+                At(line),
+            );
             return None;
         }
     };
     if !list.iter().all(|v| (0.0..=MAX_COLOR).contains(v)) {
-        warnings.add(format!("{title} must be 0 to {MAX_COLOR:e}; the line is left out"), At(line));
+        warnings.add(
+            format!("{title} must be 0 to {MAX_COLOR:e}; the line is left out"),
+            At(line),
+        );
         return None;
     }
     let over = key == "kd" && list.iter().any(|v| *v > 1.0);
     if over {
-        warnings.add("Kd reflects more than arrives; numbers above 1 are read as 1", At(line));
+        warnings.add(
+            "Kd reflects more than arrives; numbers above 1 are read as 1",
+            At(line),
+        );
     }
     let [r, g, b] = if over { list.map(|v| v.min(1.0)) } else { list };
     Some(format!("{r} {g} {b}"))
@@ -225,7 +275,10 @@ fn color(key: &str, rest: &str, line: usize, warnings: &mut Warnings) -> Option<
 
 /// The usual case of a keyword.
 fn cased(key: &str) -> String {
-    let capital = matches!(key.as_bytes(), [b'k' | b'n' | b'p', _, ..] | [b't', b'r' | b'f']) && key.len() <= 3;
+    let capital = matches!(
+        key.as_bytes(),
+        [b'k' | b'n' | b'p', _, ..] | [b't', b'r' | b'f']
+    ) && key.len() <= 3;
     let mut letters = key.chars();
     match letters.next() {
         Some(first) if capital => first.to_ascii_uppercase().to_string() + letters.as_str(),
@@ -267,7 +320,10 @@ mod tests {
         ] {
             let library = super::read("a.mtl".into(), &format!("newmtl a\n\t{line}\n"));
             let values = &library.materials[0].values;
-            let found = (values.values().next().map(String::as_str), library.warnings.lines("a.mtl").len());
+            let found = (
+                values.values().next().map(String::as_str),
+                library.warnings.lines("a.mtl").len(),
+            );
             assert_eq!(found, (read, kinds), "{line}: {:?}", library.warnings);
         }
     }

@@ -6,13 +6,19 @@ use std::borrow::Cow;
 /// other encodings.
 pub(super) fn decode(bytes: Vec<u8>) -> String {
     let utf16 = |rest: &[u8], unit: fn([u8; 2]) -> u16| {
-        let units: Vec<u16> = rest.as_chunks::<2>().0.iter().map(|pair| unit(*pair)).collect();
+        let units: Vec<u16> = rest
+            .as_chunks::<2>()
+            .0
+            .iter()
+            .map(|pair| unit(*pair))
+            .collect();
         String::from_utf16_lossy(&units)
     };
     match bytes.as_slice() {
         [0xff, 0xfe, rest @ ..] => utf16(rest, u16::from_le_bytes),
         [0xfe, 0xff, rest @ ..] => utf16(rest, u16::from_be_bytes),
-        _ => String::from_utf8(bytes).unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned()),
+        _ => String::from_utf8(bytes)
+            .unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned()),
     }
 }
 
@@ -29,7 +35,11 @@ impl Line<'_> {
     pub fn split(&self) -> (Cow<'_, str>, &str) {
         let (key, rest) = self.text.split_once(is_blank).unwrap_or((&self.text, ""));
         let lower = key.bytes().any(|b| b.is_ascii_uppercase());
-        let key = if lower { Cow::Owned(key.to_ascii_lowercase()) } else { Cow::Borrowed(key) };
+        let key = if lower {
+            Cow::Owned(key.to_ascii_lowercase())
+        } else {
+            Cow::Borrowed(key)
+        };
         (key, rest.trim_matches(is_blank))
     }
 }
@@ -47,7 +57,10 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
             }
             let first = number;
             let Some(begin) = line.strip_suffix('\\') else {
-                return Some(Line { number: first, text: Cow::Borrowed(line) });
+                return Some(Line {
+                    number: first,
+                    text: Cow::Borrowed(line),
+                });
             };
             let mut joined = begin.to_owned();
             while let Some(more) = next_line(&mut rest) {
@@ -58,7 +71,10 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
                     break;
                 }
             }
-            return Some(Line { number: first, text: Cow::Owned(joined.trim_matches(is_blank).to_owned()) });
+            return Some(Line {
+                number: first,
+                text: Cow::Owned(joined.trim_matches(is_blank).to_owned()),
+            });
         }
     })
 }
@@ -70,7 +86,10 @@ fn next_line<'a>(rest: &mut &'a str) -> Option<&'a str> {
     }
     let text: &'a str = rest;
     let bytes = text.as_bytes();
-    let end = bytes.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(bytes.len());
+    let end = bytes
+        .iter()
+        .position(|b| matches!(b, b'\n' | b'\r'))
+        .unwrap_or(bytes.len());
     let both = bytes[end..].starts_with(b"\r\n");
     *rest = text.get(end + 1 + usize::from(both)..).unwrap_or_default();
     Some(text[..end].trim_matches(is_blank))
@@ -83,7 +102,11 @@ fn is_blank(c: char) -> bool {
 
 /// The words before a comment.
 pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
-    text.split('#').next().unwrap_or_default().split(is_blank).filter(|word| !word.is_empty())
+    text.split('#')
+        .next()
+        .unwrap_or_default()
+        .split(is_blank)
+        .filter(|word| !word.is_empty())
 }
 
 /// A name without the comment behind it. `Material #25` of 3ds Max is a name.
@@ -92,16 +115,33 @@ pub(in crate::scene) fn without_comment(text: &str) -> &str {
         let before = text[..at.0].ends_with(is_blank);
         before && !text[at.0 + 1..].starts_with(|c: char| c.is_ascii_digit())
     };
-    let end = text.match_indices('#').find(is_comment).map_or(text.len(), |(at, _)| at);
+    let end = text
+        .match_indices('#')
+        .find(is_comment)
+        .map_or(text.len(), |(at, _)| at);
     text[..end].trim_end_matches(is_blank)
 }
 
 /// A name for a message: whatever a file calls itself is one short line.
 pub(in crate::scene) fn shown(name: &str) -> String {
     const LONGEST: usize = 60;
-    let end = if name.chars().nth(LONGEST).is_some() { "..." } else { "" };
-    let clean = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
-    name.chars().take(LONGEST).map(clean).chain(end.chars()).collect()
+    let end = if name.chars().nth(LONGEST).is_some() {
+        "..."
+    } else {
+        ""
+    };
+    let clean = |c: char| {
+        if c.is_control() {
+            char::REPLACEMENT_CHARACTER
+        } else {
+            c
+        }
+    };
+    name.chars()
+        .take(LONGEST)
+        .map(clean)
+        .chain(end.chars())
+        .collect()
 }
 
 #[cfg(test)]
@@ -111,10 +151,24 @@ mod tests {
     #[test]
     fn statements_have_one_form() {
         let text = "\u{feff}v 1 2\r\n# no\rF 1 2 \\\n 3\n\n  usemtl\tA b # c\n\u{1a}";
-        let found: Vec<(usize, String, String)> =
-            lines(text).map(|line| (line.number, line.split().0.into_owned(), line.split().1.to_owned())).collect();
-        let expected = [(1, "v", "1 2"), (3, "f", "1 2  3"), (6, "usemtl", "A b # c")];
-        assert_eq!(found, expected.map(|(n, key, rest)| (n, key.to_owned(), rest.to_owned())));
+        let found: Vec<(usize, String, String)> = lines(text)
+            .map(|line| {
+                (
+                    line.number,
+                    line.split().0.into_owned(),
+                    line.split().1.to_owned(),
+                )
+            })
+            .collect();
+        let expected = [
+            (1, "v", "1 2"),
+            (3, "f", "1 2  3"),
+            (6, "usemtl", "A b # c"),
+        ];
+        assert_eq!(
+            found,
+            expected.map(|(n, key, rest)| (n, key.to_owned(), rest.to_owned()))
+        );
     }
 
     #[test]

@@ -25,14 +25,20 @@ pub(super) struct Placement {
 
 impl Default for Placement {
     fn default() -> Placement {
-        Placement { scale: [1.0; 2], offset: [0.0; 2] }
+        Placement {
+            scale: [1.0; 2],
+            offset: [0.0; 2],
+        }
     }
 }
 
 impl Placement {
     /// Placed coordinates. The origin of OBJ is the lower left of the picture, that of scenes the upper left.
     pub fn of(&self, [u, v]: [f32; 2]) -> [f32; 2] {
-        [u * self.scale[0] + self.offset[0], 1.0 - (v * self.scale[1] + self.offset[1])]
+        [
+            u * self.scale[0] + self.offset[0],
+            1.0 - (v * self.scale[1] + self.offset[1]),
+        ]
     }
 
     /// Equal placements have equal bits.
@@ -109,7 +115,9 @@ fn numbers<const N: usize>(rest: &mut &str) -> [Option<f32>; N] {
     let mut found = [None; N];
     for number in &mut found {
         let (first, after) = word(rest);
-        let Some(value) = first.parse::<f32>().ok().filter(|_| !after.is_empty()) else { break };
+        let Some(value) = first.parse::<f32>().ok().filter(|_| !after.is_empty()) else {
+            break;
+        };
         *number = Some(value).filter(|value| value.is_finite());
         *rest = after;
     }
@@ -124,24 +132,76 @@ mod tests {
     fn entries_have_options_and_a_file() {
         for (entry, file, [scale, offset], strength, left_out) in [
             ("a b.png", "a b.png", [[1.0; 2], [0.0; 2]], None, &[][..]),
-            ("-bm 0.5 t\\wall.png", "t\\wall.png", [[1.0; 2], [0.0; 2]], Some(0.5), &[]),
-            ("-o 1 2 -s 4 4 1 -clamp on a.png", "a.png", [[4.0; 2], [1.0, 2.0]], None, &[]),
-            ("-O 1 -S 2 a.png", "a.png", [[2.0, 1.0], [1.0, 0.0]], None, &[]),
-            ("  -mm 0 1 -blendu on -texres 512 a.png", "a.png", [[1.0; 2], [0.0; 2]], None, &[]),
-            ("-mm 0.1 2 -imfchan r -t 1 a.png", "a.png", [[1.0; 2], [0.0; 2]], None, &["-mm", "-imfchan", "-t"]),
+            (
+                "-bm 0.5 t\\wall.png",
+                "t\\wall.png",
+                [[1.0; 2], [0.0; 2]],
+                Some(0.5),
+                &[],
+            ),
+            (
+                "-o 1 2 -s 4 4 1 -clamp on a.png",
+                "a.png",
+                [[4.0; 2], [1.0, 2.0]],
+                None,
+                &[],
+            ),
+            (
+                "-O 1 -S 2 a.png",
+                "a.png",
+                [[2.0, 1.0], [1.0, 0.0]],
+                None,
+                &[],
+            ),
+            (
+                "  -mm 0 1 -blendu on -texres 512 a.png",
+                "a.png",
+                [[1.0; 2], [0.0; 2]],
+                None,
+                &[],
+            ),
+            (
+                "-mm 0.1 2 -imfchan r -t 1 a.png",
+                "a.png",
+                [[1.0; 2], [0.0; 2]],
+                None,
+                &["-mm", "-imfchan", "-t"],
+            ),
             ("-s 2 2 7", "7", [[2.0; 2], [0.0; 2]], None, &[]),
-            ("-s nan inf 1 a.png # x", "a.png # x", [[1.0; 2], [0.0; 2]], None, &[]),
+            (
+                "-s nan inf 1 a.png # x",
+                "a.png # x",
+                [[1.0; 2], [0.0; 2]],
+                None,
+                &[],
+            ),
         ] {
             let map = parse(entry).unwrap();
             let expected = (file, scale, offset, strength, left_out);
-            let Map { file, placement, strength, left_out, clamp } = &map;
+            let Map {
+                file,
+                placement,
+                strength,
+                left_out,
+                clamp,
+            } = &map;
             assert_eq!(*clamp, entry.contains("-clamp on"), "{entry}");
             assert_eq!(
-                (file.as_str(), placement.scale, placement.offset, *strength, &left_out[..]),
+                (
+                    file.as_str(),
+                    placement.scale,
+                    placement.offset,
+                    *strength,
+                    &left_out[..]
+                ),
                 expected,
                 "{entry}"
             );
         }
-        assert!(["", "-clamp on", "# a.png"].iter().all(|entry| parse(entry).is_none()));
+        assert!(
+            ["", "-clamp on", "# a.png"]
+                .iter()
+                .all(|entry| parse(entry).is_none())
+        );
     }
 }

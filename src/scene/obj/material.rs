@@ -22,7 +22,10 @@ pub(super) struct Surface {
 
 /// The surface of a piece's material.
 pub(super) fn surface_of(surfaces: &[Surface], material: Option<u32>) -> Surface {
-    material.map_or(surfaces.last(), |used| surfaces.get(used as usize)).copied().unwrap_or_default()
+    material
+        .map_or(surfaces.last(), |used| surfaces.get(used as usize))
+        .copied()
+        .unwrap_or_default()
 }
 
 /// A material with the placement of its pictures.
@@ -51,18 +54,43 @@ struct Reader<'a, 'b> {
 }
 
 /// A material from its statements.
-pub(super) fn read(definition: &Definition, pictures: &mut Pictures, warnings: &mut Warnings) -> Read {
+pub(super) fn read(
+    definition: &Definition,
+    pictures: &mut Pictures,
+    warnings: &mut Warnings,
+) -> Read {
     let name = definition.name.clone();
-    let mut reader = Reader { definition, pictures, warnings };
+    let mut reader = Reader {
+        definition,
+        pictures,
+        warnings,
+    };
     let [color, alpha, emission_map] = ["map_kd", "map_d", "map_ke"].map(|key| reader.map(key));
     let [rough_map, metal_map] = ["map_pr", "map_pm"].map(|key| reader.map(key));
     let (normal_map, is_bump) = reader.normal_map();
     let strength = normal_map.as_ref().and_then(|(_, map)| map.strength);
-    let placement = reader.placement([&color, &alpha, &emission_map, &rough_map, &metal_map, &normal_map]);
+    let placement = reader.placement([
+        &color,
+        &alpha,
+        &emission_map,
+        &rough_map,
+        &metal_map,
+        &normal_map,
+    ]);
     let laid = |map: Option<(Source, Map)>| {
         map.map(|(image, map)| {
-            let wrap = if map.clamp { [Wrap::Clamp; 2] } else { [Wrap::Repeat; 2] };
-            Picture { image, lookup: Lookup { wrap, ..Lookup::default() } }
+            let wrap = if map.clamp {
+                [Wrap::Clamp; 2]
+            } else {
+                [Wrap::Repeat; 2]
+            };
+            Picture {
+                image,
+                lookup: Lookup {
+                    wrap,
+                    ..Lookup::default()
+                },
+            }
         })
     };
     let maps = Maps {
@@ -75,9 +103,16 @@ pub(super) fn read(definition: &Definition, pictures: &mut Pictures, warnings: &
         emission: laid(emission_map),
     };
     let mut parts = Parts {
-        base_color: reader.factor("kd", "map_Kd", maps.color.is_some()).unwrap_or(Vec3::splat(0.8)),
-        emission: reader.factor("ke", "map_Ke", maps.emission.is_some()).unwrap_or(Vec3::ZERO),
-        opacity: reader.number("d").or_else(|| reader.number("tr").map(|t| 1.0 - t)).unwrap_or(1.0),
+        base_color: reader
+            .factor("kd", "map_Kd", maps.color.is_some())
+            .unwrap_or(Vec3::splat(0.8)),
+        emission: reader
+            .factor("ke", "map_Ke", maps.emission.is_some())
+            .unwrap_or(Vec3::ZERO),
+        opacity: reader
+            .number("d")
+            .or_else(|| reader.number("tr").map(|t| 1.0 - t))
+            .unwrap_or(1.0),
         cutoff: reader.number("alpha_cutoff"),
         roughness: reader.number("pr"),
         exponent: reader.number("ns"),
@@ -86,7 +121,13 @@ pub(super) fn read(definition: &Definition, pictures: &mut Pictures, warnings: &
         name,
     };
     let has_alpha = parts.maps.alpha.is_some();
-    parts.opacity = opacity(parts.opacity, has_alpha, parts.cutoff(), &shown(&parts.name), reader.warnings);
+    parts.opacity = opacity(
+        parts.opacity,
+        has_alpha,
+        parts.cutoff(),
+        &shown(&parts.name),
+        reader.warnings,
+    );
     let asked = parts.build(reader.pictures.requests);
     let material = Material {
         ior: reader.number("ior").unwrap_or(1.5).clamp(0.0, 1e6),
@@ -96,7 +137,10 @@ pub(super) fn read(definition: &Definition, pictures: &mut Pictures, warnings: &
         normal_scale: reader.number("normal_scale").or(strength).unwrap_or(1.0),
         ..asked.material
     };
-    Read { asked: Asked { material, ..asked }, placement }
+    Read {
+        asked: Asked { material, ..asked },
+        placement,
+    }
 }
 
 impl Reader<'_, '_> {
@@ -105,8 +149,17 @@ impl Reader<'_, '_> {
     }
 
     fn color(&self, key: &str) -> Option<Vec3> {
-        let mut numbers = self.definition.values.get(key)?.split(' ').map(|word| word.parse().ok());
-        Some(Vec3::new(numbers.next()??, numbers.next()??, numbers.next()??))
+        let mut numbers = self
+            .definition
+            .values
+            .get(key)?
+            .split(' ')
+            .map(|word| word.parse().ok());
+        Some(Vec3::new(
+            numbers.next()??,
+            numbers.next()??,
+            numbers.next()??,
+        ))
     }
 
     fn warn(&mut self, what: impl Into<String>) {
@@ -121,7 +174,9 @@ impl Reader<'_, '_> {
         }
         if color == Some(Vec3::ZERO) {
             let title = map.trim_start_matches("map_");
-            self.warn(format!("{title} is 0 next to {map}: the map is used as it is"));
+            self.warn(format!(
+                "{title} is 0 next to {map}: the map is used as it is"
+            ));
             return Some(Vec3::ONE);
         }
         color.or(Some(Vec3::ONE))
@@ -133,7 +188,10 @@ impl Reader<'_, '_> {
         for option in &map.left_out {
             self.warn(format!("the option {option} of maps is left out"));
         }
-        Some((Source::File(self.pictures.finder.find(&map.file, self.warnings)), map))
+        Some((
+            Source::File(self.pictures.finder.find(&map.file, self.warnings)),
+            map,
+        ))
     }
 
     /// The normal map, and whether it may hold heights: a bump entry is a height map by the format, and a normal map in
@@ -145,10 +203,15 @@ impl Reader<'_, '_> {
         if given.is_some() {
             return (given, false);
         }
-        let Some((source, map)) = bump.or(other_bump) else { return (None, false) };
+        let Some((source, map)) = bump.or(other_bump) else {
+            return (None, false);
+        };
         // Most bump maps hold heights: a checkerboard of normals would be wrong.
         if self.pictures.finder.look(&map.file).1 == Found::No {
-            self.warnings.add("bump maps that are not there are left out", shown(&source.name()));
+            self.warnings.add(
+                "bump maps that are not there are left out",
+                shown(&source.name()),
+            );
             return (None, false);
         }
         (Some((source, map)), true)
@@ -157,7 +220,9 @@ impl Reader<'_, '_> {
     /// Where pictures are: vertices have one set of coordinates, so that the first map decides.
     fn placement(&mut self, maps: [&Option<(Source, Map)>; 6]) -> Placement {
         let mut placements = maps.into_iter().flatten().map(|(_, map)| map.placement);
-        let Some(first) = placements.next() else { return Placement::default() };
+        let Some(first) = placements.next() else {
+            return Placement::default();
+        };
         if placements.any(|placement| placement != first) {
             self.warn(
                 "maps of one material have different -s or -o: those of the first (map_Kd, if there is one) are used",

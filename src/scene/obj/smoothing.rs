@@ -24,14 +24,24 @@ pub(super) enum Group {
 /// Gives a normal to each corner with a normal of zero: the mean over the triangles of its group at that point, weighted
 /// by their angles. `groups` has one for each triangle.
 pub(super) fn complete(mesh: &mut Mesh, groups: &[Group]) {
-    let mut corners: Vec<Vertex> = mesh.indices.iter().map(|i| mesh.vertices[*i as usize]).collect();
+    let mut corners: Vec<Vertex> = mesh
+        .indices
+        .iter()
+        .map(|i| mesh.vertices[*i as usize])
+        .collect();
     let triangles = corners.as_chunks::<3>().0;
-    let faces: Vec<Vec3> = triangles.iter().map(|t| face_normal(t.map(|v| v.position))).collect();
+    let faces: Vec<Vec3> = triangles
+        .iter()
+        .map(|t| face_normal(t.map(|v| v.position)))
+        .collect();
     // A triangle without area has no say: its normal is arbitrary.
     let weights: Vec<f32> = triangles.iter().flat_map(weights).collect();
     let mut at_point: HashMap<[u32; 3], Vec<u32>> = HashMap::new();
     for (i, corner) in corners.iter().enumerate() {
-        at_point.entry(point_key(corner.position)).or_default().push(i as u32);
+        at_point
+            .entry(point_key(corner.position))
+            .or_default()
+            .push(i as u32);
     }
     let group_of = |i: u32| groups[i as usize / 3];
     let weighted = |i: u32| faces[i as usize / 3] * weights[i as usize];
@@ -39,7 +49,11 @@ pub(super) fn complete(mesh: &mut Mesh, groups: &[Group]) {
         point.sort_by_key(|i| group_of(*i));
         for together in point.chunk_by(|a, b| group_of(*a) == group_of(*b)) {
             let all: Vec3 = together.iter().map(|i| weighted(*i)).sum();
-            for &i in together.iter().filter(|i| corners[**i as usize].normal == [0.0; 3]).collect::<Vec<_>>() {
+            for &i in together
+                .iter()
+                .filter(|i| corners[**i as usize].normal == [0.0; 3])
+                .collect::<Vec<_>>()
+            {
                 let own = faces[i as usize / 3];
                 let near = |j: &&u32| !is_creased(faces[**j as usize / 3], own);
                 let sum = match group_of(i) {
@@ -58,6 +72,7 @@ pub(super) fn complete(mesh: &mut Mesh, groups: &[Group]) {
 fn weights(triangle: &[Vertex; 3]) -> [f32; 3] {
     let [a, b, c] = triangle.map(|v| Vec3::from_array(v.position));
     let angles = corner_angles(triangle);
-    let has_area = (b - a).cross(c - a).length_squared() > 0.0 && angles.iter().all(|angle| angle.is_finite());
+    let has_area =
+        (b - a).cross(c - a).length_squared() > 0.0 && angles.iter().all(|angle| angle.is_finite());
     if has_area { angles } else { [0.0; 3] }
 }

@@ -36,7 +36,10 @@ pub(super) fn triangulate(polygon: &[[f32; 3]], out: &mut Vec<[u32; 3]>) -> Cut 
     }
     let Some(planes) = plane::project(polygon) else {
         fan(out);
-        return Cut { rough: plane::has_area(polygon), tests: 0 };
+        return Cut {
+            rough: plane::has_area(polygon),
+            tests: 0,
+        };
     };
     let mut all = Cut::default();
     let begin = out.len();
@@ -44,11 +47,17 @@ pub(super) fn triangulate(polygon: &[[f32; 3]], out: &mut Vec<[u32; 3]>) -> Cut 
         out.truncate(begin);
         if plane::is_convex(&points) {
             fan(out);
-            return Cut { rough: false, ..all };
+            return Cut {
+                rough: false,
+                ..all
+            };
         }
         let mut clipper = Clipper::new(&points);
         clipper.run(out);
-        all = Cut { rough: clipper.rough, tests: all.tests + clipper.tests };
+        all = Cut {
+            rough: clipper.rough,
+            tests: all.tests + clipper.tests,
+        };
         if !all.rough || clipper.is_exhausted() {
             break;
         }
@@ -90,7 +99,11 @@ impl Clipper<'_> {
         let next: Vec<u32> = (1..count).chain([0]).collect();
         let previous: Vec<u32> = [count - 1].into_iter().chain(0..count - 1).collect();
         let turn = |i: u32| {
-            cross(points[previous[i as usize] as usize], points[i as usize], points[next[i as usize] as usize])
+            cross(
+                points[previous[i as usize] as usize],
+                points[i as usize],
+                points[next[i as usize] as usize],
+            )
         };
         let reflex: Vec<u32> = (0..count).filter(|i| turn(*i) <= 0.0).collect();
         let mut clipper = Clipper {
@@ -124,7 +137,11 @@ impl Clipper<'_> {
     }
 
     fn around(&self, corner: u32) -> [u32; 3] {
-        [self.previous[corner as usize], corner, self.next[corner as usize]]
+        [
+            self.previous[corner as usize],
+            corner,
+            self.next[corner as usize],
+        ]
     }
 
     /// Above 0 where the polygon is convex.

@@ -36,14 +36,22 @@ pub(in crate::scene) enum Found {
 
 impl Finder {
     pub fn new(folder: &Path) -> Finder {
-        Finder { folder: folder.into(), known: HashMap::new(), listed: HashMap::new(), searches: 0 }
+        Finder {
+            folder: folder.into(),
+            known: HashMap::new(),
+            listed: HashMap::new(),
+            searches: 0,
+        }
     }
 
     /// The file that a text names, or where it would be. A file in another case or place is a warning.
     pub fn find(&mut self, text: &str, warnings: &mut Warnings) -> PathBuf {
         let (path, found) = self.look(text);
         if found == Found::Elsewhere {
-            warnings.add("files were found under a name in another case, or in another folder", shown(text));
+            warnings.add(
+                "files were found under a name in another case, or in another folder",
+                shown(text),
+            );
         }
         path
     }
@@ -84,12 +92,17 @@ impl Finder {
     /// The file in another case, or the end of its path below the model's folder.
     fn elsewhere(&mut self, name: &str) -> Option<PathBuf> {
         let is_drive = |part: &&str| part.len() == 2 && part.ends_with(':');
-        let parts: Vec<&str> = name.split('/').filter(|part| !part.is_empty() && !is_drive(part)).collect();
+        let parts: Vec<&str> = name
+            .split('/')
+            .filter(|part| !part.is_empty() && !is_drive(part))
+            .collect();
         let shortest = parts.len().saturating_sub(DEPTH).max(1);
-        std::iter::once(0).chain(shortest..parts.len()).find_map(|first| {
-            let tail = parts.get(first..).filter(|tail| !tail.is_empty())?;
-            self.without_case(&tail.join("/"))
-        })
+        std::iter::once(0)
+            .chain(shortest..parts.len())
+            .find_map(|first| {
+                let tail = parts.get(first..).filter(|tail| !tail.is_empty())?;
+                self.without_case(&tail.join("/"))
+            })
     }
 
     /// A path below the model's folder, in any case.
@@ -110,12 +123,25 @@ impl Finder {
 
     fn listing(&mut self, folder: &Path) -> &HashMap<String, String> {
         self.listed.entry(folder.to_owned()).or_insert_with(|| {
-            let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-            let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().take(ENTRIES);
-            let mut names: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+            let folder = if folder.as_os_str().is_empty() {
+                Path::new(".")
+            } else {
+                folder
+            };
+            let entries = std::fs::read_dir(folder)
+                .into_iter()
+                .flatten()
+                .flatten()
+                .take(ENTRIES);
+            let mut names: Vec<String> = entries
+                .filter_map(|entry| entry.file_name().into_string().ok())
+                .collect();
             // The order of a folder is arbitrary: of `A` and `a`, the first by name counts.
             names.sort_unstable_by(|a, b| b.cmp(a));
-            names.into_iter().map(|name| (name.to_lowercase(), name)).collect()
+            names
+                .into_iter()
+                .map(|name| (name.to_lowercase(), name))
+                .collect()
         })
     }
 }
@@ -123,8 +149,15 @@ impl Finder {
 /// A text as a path: without quotes, with slashes.
 fn path_of(text: &str) -> String {
     let text = text.trim();
-    let quoted = |q: char| text.strip_prefix(q).and_then(|t| t.split_once(q)).map(|(name, _)| name);
-    quoted('"').or_else(|| quoted('\'')).unwrap_or(text).replace('\\', "/")
+    let quoted = |q: char| {
+        text.strip_prefix(q)
+            .and_then(|t| t.split_once(q))
+            .map(|(name, _)| name)
+    };
+    quoted('"')
+        .or_else(|| quoted('\''))
+        .unwrap_or(text)
+        .replace('\\', "/")
 }
 
 /// Whether it is something that could be opened; only regular files will be.
@@ -154,14 +187,25 @@ mod tests {
             ("\"my wall.png\"", "my wall.png", Found::Exact),
             ("my wall.png # x", "my wall.png", Found::Exact),
             ("Textures\\Wall.PNG", "textures/wall.png", Found::Elsewhere),
-            ("C:\\Users\\me\\textures\\wall.png", "textures/wall.png", Found::Elsewhere),
-            ("\\\\server\\share\\MY WALL.png", "my wall.png", Found::Elsewhere),
+            (
+                "C:\\Users\\me\\textures\\wall.png",
+                "textures/wall.png",
+                Found::Elsewhere,
+            ),
+            (
+                "\\\\server\\share\\MY WALL.png",
+                "my wall.png",
+                Found::Elsewhere,
+            ),
             ("/home/me/roof.png", "Roof.PNG", Found::Elsewhere),
             ("maps/roof.png", "Roof.PNG", Found::Elsewhere),
             ("gone.png", "gone.png", Found::No),
         ] {
             let (path, how) = finder.look(text);
-            let (path, expected) = (path.canonicalize().ok(), folder.path().join(name).canonicalize().ok());
+            let (path, expected) = (
+                path.canonicalize().ok(),
+                folder.path().join(name).canonicalize().ok(),
+            );
             assert_eq!((path, how), (expected, found), "{text}");
         }
         assert_eq!(finder.look(&"x".repeat(100_000)).1, Found::No);

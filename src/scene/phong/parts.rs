@@ -56,10 +56,19 @@ impl Parts {
     pub fn build(self, requests: &mut Requests) -> Asked {
         let cutoff = self.cutoff();
         let Parts { name, maps, .. } = self;
-        let lookup = |map: &Option<Picture>| map.as_ref().map_or(Lookup::default(), |map| map.lookup);
+        let lookup =
+            |map: &Option<Picture>| map.as_ref().map_or(Lookup::default(), |map| map.lookup);
         let lookups = Lookups {
-            base_color: lookup(if maps.color.is_some() { &maps.color } else { &maps.alpha }),
-            metallic_roughness: lookup(if maps.roughness.is_some() { &maps.roughness } else { &maps.metallic }),
+            base_color: lookup(if maps.color.is_some() {
+                &maps.color
+            } else {
+                &maps.alpha
+            }),
+            metallic_roughness: lookup(if maps.roughness.is_some() {
+                &maps.roughness
+            } else {
+                &maps.metallic
+            }),
             normal: lookup(&maps.normal),
             emission: lookup(&maps.emission),
         };
@@ -71,21 +80,39 @@ impl Parts {
         let mask = (cutoff * 255.0).round() as u8;
         let base_color_texture = match (color, alpha) {
             (Some(image), None) => Some(Recipe::Color { image, mask: None }),
-            (Some(image), Some(alpha)) if image == alpha => Some(Recipe::Color { image, mask: Some(mask) }),
+            (Some(image), Some(alpha)) if image == alpha => Some(Recipe::Color {
+                image,
+                mask: Some(mask),
+            }),
             (color, Some(alpha)) => Some(Recipe::ColorAndMask { color, alpha, mask }),
             (None, None) => None,
         };
         let rough_metal = rough_map.is_some() || metal_map.is_some();
         // A factor that is not given must not switch its map off.
-        let metallic = self.metallic.unwrap_or(if metal_map.is_some() { 1.0 } else { 0.0 });
-        let from_exponent = |exponent: f32| if rough_metal { 1.0 } else { roughness_of(exponent) };
-        let roughness = self.roughness.unwrap_or_else(|| self.exponent.map_or(1.0, from_exponent));
+        let metallic = self
+            .metallic
+            .unwrap_or(if metal_map.is_some() { 1.0 } else { 0.0 });
+        let from_exponent = |exponent: f32| {
+            if rough_metal {
+                1.0
+            } else {
+                roughness_of(exponent)
+            }
+        };
+        let roughness = self
+            .roughness
+            .unwrap_or_else(|| self.exponent.map_or(1.0, from_exponent));
         let mut ask = |recipe: Recipe| requests.ask(recipe, &name);
         let base_color_texture = base_color_texture.map(&mut ask);
-        let metallic_roughness_texture =
-            rough_metal.then(|| ask(Recipe::RoughnessAndMetallic { roughness: rough_map, metallic: metal_map }));
+        let metallic_roughness_texture = rough_metal.then(|| {
+            ask(Recipe::RoughnessAndMetallic {
+                roughness: rough_map,
+                metallic: metal_map,
+            })
+        });
         let normal_texture = file(maps.normal).map(|image| ask(Recipe::Normal { image }));
-        let emission_texture = file(maps.emission).map(|image| ask(Recipe::Color { image, mask: None }));
+        let emission_texture =
+            file(maps.emission).map(|image| ask(Recipe::Color { image, mask: None }));
         let material = Material {
             base_color: self.base_color.extend(self.opacity),
             metallic: metallic.clamp(0.0, 1.0),
@@ -102,7 +129,11 @@ impl Parts {
             name,
             ..Material::default()
         };
-        Asked { material, mask_by_alpha, is_bump: maps.is_bump }
+        Asked {
+            material,
+            mask_by_alpha,
+            is_bump: maps.is_bump,
+        }
     }
 }
 
@@ -113,16 +144,37 @@ fn roughness_of(exponent: f32) -> f32 {
 
 /// The material of faces without one. Colours of their vertices are their whole colour.
 pub(in crate::scene) fn grey(has_colors: bool) -> Material {
-    let base_color = if has_colors { Vec4::ONE } else { Material::default().base_color };
-    Material { base_color, two_sided: true, ..Material::default() }
+    let base_color = if has_colors {
+        Vec4::ONE
+    } else {
+        Material::default().base_color
+    };
+    Material {
+        base_color,
+        two_sided: true,
+        ..Material::default()
+    }
 }
 
 /// An opacity from 0 to 1. Without a map the surface is there, or it is not; numbers between are a warning.
-pub(in crate::scene) fn opacity(opacity: f32, has_map: bool, cutoff: f32, name: &str, warnings: &mut Warnings) -> f32 {
+pub(in crate::scene) fn opacity(
+    opacity: f32,
+    has_map: bool,
+    cutoff: f32,
+    name: &str,
+    warnings: &mut Warnings,
+) -> f32 {
     let opacity = opacity.clamp(0.0, 1.0);
     if !has_map && opacity < 1.0 && cutoff > 0.0 {
-        let shown = if opacity < cutoff { "left out" } else { "opaque" };
-        warnings.add(format!("materials with an opacity of {opacity:.2} are {shown}"), name);
+        let shown = if opacity < cutoff {
+            "left out"
+        } else {
+            "opaque"
+        };
+        warnings.add(
+            format!("materials with an opacity of {opacity:.2} are {shown}"),
+            name,
+        );
     }
     opacity
 }

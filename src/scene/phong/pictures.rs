@@ -37,15 +37,31 @@ pub(in crate::scene) fn decide(
                 *mark |= wanted;
             }
         };
-        mark(&mut colors, asked.material.base_color_texture, asked.mask_by_alpha);
+        mark(
+            &mut colors,
+            asked.material.base_color_texture,
+            asked.mask_by_alpha,
+        );
         mark(&mut bumps, asked.material.normal_texture, asked.is_bump);
     }
-    let holes: Vec<Holes> =
-        textures.par_iter().zip(&colors).map(|(t, wanted)| if *wanted { t.holes() } else { Holes::None }).collect();
-    let normals: Vec<bool> = textures.par_iter().zip(&bumps).map(|(t, wanted)| !wanted || t.holds_normals()).collect();
+    let holes: Vec<Holes> = textures
+        .par_iter()
+        .zip(&colors)
+        .map(|(t, wanted)| if *wanted { t.holes() } else { Holes::None })
+        .collect();
+    let normals: Vec<bool> = textures
+        .par_iter()
+        .zip(&bumps)
+        .map(|(t, wanted)| !wanted || t.holds_normals())
+        .collect();
     for (number, asked) in materials.iter_mut().enumerate() {
         let material = &mut asked.material;
-        let of = |index: Option<u32>| index.and_then(|i| holes.get(i as usize)).copied().unwrap_or(Holes::None);
+        let of = |index: Option<u32>| {
+            index
+                .and_then(|i| holes.get(i as usize))
+                .copied()
+                .unwrap_or(Holes::None)
+        };
         match of(material.base_color_texture) {
             Holes::Some if asked.mask_by_alpha => {
                 warn(number, &material.name, words.holes);
@@ -54,14 +70,24 @@ pub(in crate::scene) fn decide(
             Holes::All if asked.mask_by_alpha => warn(number, &material.name, words.all_clear),
             _ => {}
         }
-        let has_heights = material.normal_texture.is_some_and(|i| !normals.get(i as usize).is_some_and(|known| *known));
+        let has_heights = material
+            .normal_texture
+            .is_some_and(|i| !normals.get(i as usize).is_some_and(|known| *known));
         if asked.is_bump && has_heights {
             warn(number, &material.name, words.heights);
             material.normal_texture = None;
         }
     }
     let masked = std::mem::take(textures).into_par_iter().zip(holes);
-    *textures = masked.map(|(texture, holes)| if holes == Holes::Some { texture.masked() } else { texture }).collect();
+    *textures = masked
+        .map(|(texture, holes)| {
+            if holes == Holes::Some {
+                texture.masked()
+            } else {
+                texture
+            }
+        })
+        .collect();
     drop_unused(&mut materials, textures);
 }
 

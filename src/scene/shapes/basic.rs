@@ -29,16 +29,42 @@ impl Cuboid {
     pub fn build(&self, mesh: &mut MeshBuilder, at: Vec3) {
         let material = mesh.paint(&self.material);
         let (low, high) = (self.low + at, self.high + at);
-        if let Some(face) = self.open.iter().find(|face| !FACES.contains(&face.as_str())) {
-            mesh.fail(face, format!("a box has no face '{face}': it is one of {}", FACES.join(", ")));
+        if let Some(face) = self
+            .open
+            .iter()
+            .find(|face| !FACES.contains(&face.as_str()))
+        {
+            mesh.fail(
+                face,
+                format!(
+                    "a box has no face '{face}': it is one of {}",
+                    FACES.join(", ")
+                ),
+            );
         }
         if !self.inside {
-            return mesh.cuboid(material, low, high, self.tile, FACES.map(|face| !self.open.iter().any(|o| o == face)));
+            return mesh.cuboid(
+                material,
+                low,
+                high,
+                self.tile,
+                FACES.map(|face| !self.open.iter().any(|o| o == face)),
+            );
         }
-        let ring = [(low.x, low.z), (high.x, low.z), (high.x, high.z), (low.x, high.z)];
+        let ring = [
+            (low.x, low.z),
+            (high.x, low.z),
+            (high.x, high.z),
+            (low.x, high.z),
+        ];
         for i in 0..4 {
             let ((ax, az), (bx, bz)) = (ring[i], ring[(i + 1) % 4]);
-            let corners = [(ax, low.y, az), (bx, low.y, bz), (bx, high.y, bz), (ax, high.y, az)];
+            let corners = [
+                (ax, low.y, az),
+                (bx, low.y, bz),
+                (bx, high.y, bz),
+                (ax, high.y, az),
+            ];
             mesh.quad(material, corners.map(Vec3::from), 8, self.tile);
         }
     }
@@ -64,7 +90,12 @@ fn undivided() -> u32 {
 impl Quad {
     pub fn build(&self, mesh: &mut MeshBuilder, at: Vec3) {
         let material = mesh.paint(&self.material);
-        mesh.quad(material, self.corners.map(|corner| corner + at), self.divisions, self.tile);
+        mesh.quad(
+            material,
+            self.corners.map(|corner| corner + at),
+            self.divisions,
+            self.tile,
+        );
     }
 }
 
@@ -81,12 +112,24 @@ pub(in crate::scene) struct Triangle {
 impl Triangle {
     pub fn build(&self, mesh: &mut MeshBuilder, at: Vec3) {
         let material = mesh.paint(&self.material);
-        flat_triangle(mesh, material, self.corners.map(|corner| corner + at), self.uvs);
+        flat_triangle(
+            mesh,
+            material,
+            self.corners.map(|corner| corner + at),
+            self.uvs,
+        );
     }
 }
 
-pub(super) fn flat_triangle(mesh: &mut MeshBuilder, material: u32, corners: [Vec3; 3], uvs: [Vec2; 3]) {
-    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or(Vec3::Y);
+pub(super) fn flat_triangle(
+    mesh: &mut MeshBuilder,
+    material: u32,
+    corners: [Vec3; 3],
+    uvs: [Vec2; 3],
+) {
+    let normal = (corners[1] - corners[0])
+        .cross(corners[2] - corners[0])
+        .normalize_or(Vec3::Y);
     if mesh.has_room(3) {
         let corners = [0, 1, 2].map(|i| mesh.vertex(corners[i], normal, uvs[i]));
         mesh.triangle(material, corners);
@@ -114,14 +157,30 @@ impl Ball {
         }
     }
 
-    fn face(&self, mesh: &mut MeshBuilder, material: u32, centre: Vec3, face: [Vec3; 3], level: u32) {
+    fn face(
+        &self,
+        mesh: &mut MeshBuilder,
+        material: u32,
+        centre: Vec3,
+        face: [Vec3; 3],
+        level: u32,
+    ) {
         let [a, b, c] = face;
         if level == 0 {
-            let uv = |n: Vec3| Vec2::new(n.z.atan2(n.x) / TAU + 0.5, n.y.clamp(-1.0, 1.0).acos() / (0.5 * TAU));
+            let uv = |n: Vec3| {
+                Vec2::new(
+                    n.z.atan2(n.x) / TAU + 0.5,
+                    n.y.clamp(-1.0, 1.0).acos() / (0.5 * TAU),
+                )
+            };
             let corners = face.map(|n| mesh.vertex(centre + n * self.radius, n, uv(n)));
             return mesh.triangle(material, corners);
         }
-        let (ab, bc, ca) = ((a + b).normalize(), (b + c).normalize(), (c + a).normalize());
+        let (ab, bc, ca) = (
+            (a + b).normalize(),
+            (b + c).normalize(),
+            (c + a).normalize(),
+        );
         for face in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
             self.face(mesh, material, centre, face, level - 1);
         }
@@ -130,7 +189,9 @@ impl Ball {
 
 fn icosahedron() -> [[Vec3; 3]; 20] {
     let g = (1.0 + 5.0f32.sqrt()) / 2.0;
-    let rectangle = |turn: fn(f32, f32) -> Vec3| [(-1.0, g), (1.0, g), (-1.0, -g), (1.0, -g)].map(|(a, b)| turn(a, b));
+    let rectangle = |turn: fn(f32, f32) -> Vec3| {
+        [(-1.0, g), (1.0, g), (-1.0, -g), (1.0, -g)].map(|(a, b)| turn(a, b))
+    };
     let corners = [
         rectangle(|a, b| Vec3::new(a, b, 0.0)),
         rectangle(|a, b| Vec3::new(0.0, a, b)),
@@ -181,12 +242,17 @@ impl Lathe {
         let length: f32 = profile.windows(2).map(|w| w[0].distance(w[1])).sum();
         let widest = profile.iter().map(|p| p.x).fold(0.0, f32::max);
         let turns = (TAU * widest / self.tile).round().max(1.0);
-        mesh.surface(material, [self.sides, self.rows], Vec2::new(turns, length / self.tile), |u, v| {
-            let (below, above, t) = span(profile, v);
-            let p = below.lerp(above, t);
-            let angle = -u * TAU;
-            Vec3::new(p.x * angle.cos(), p.y, p.x * angle.sin())
-        });
+        mesh.surface(
+            material,
+            [self.sides, self.rows],
+            Vec2::new(turns, length / self.tile),
+            |u, v| {
+                let (below, above, t) = span(profile, v);
+                let p = below.lerp(above, t);
+                let angle = -u * TAU;
+                Vec3::new(p.x * angle.cos(), p.y, p.x * angle.sin())
+            },
+        );
     }
 }
 
@@ -213,7 +279,13 @@ pub(in crate::scene) struct Cylinder {
 
 impl Cylinder {
     pub fn build(&self, mesh: &mut MeshBuilder) {
-        let &Cylinder { radius, height, sides, rows, .. } = self;
+        let &Cylinder {
+            radius,
+            height,
+            sides,
+            rows,
+            ..
+        } = self;
         let material = mesh.paint(&self.material);
         let out = |u: f32| {
             let side = (u * sides as f32).round() as u32 % sides.max(1);
@@ -221,7 +293,11 @@ impl Cylinder {
             Vec3::new(c, 0.0, s)
         };
         mesh.grid(material, [sides, rows], |u, v| {
-            (out(u) * radius + Vec3::Y * (v * height), out(u), Vec2::new(u, 1.0 - v))
+            (
+                out(u) * radius + Vec3::Y * (v * height),
+                out(u),
+                Vec2::new(u, 1.0 - v),
+            )
         });
         if !mesh.has_room(4 * u64::from(sides) + 2) {
             return;
@@ -231,9 +307,20 @@ impl Cylinder {
             for i in 0..sides {
                 let [a, b] = [i, i + 1].map(|i| {
                     let out = out(i as f32 / sides as f32);
-                    mesh.vertex(out * radius + Vec3::Y * y, normal, 0.5 + 0.5 * Vec2::new(out.x, out.z))
+                    mesh.vertex(
+                        out * radius + Vec3::Y * y,
+                        normal,
+                        0.5 + 0.5 * Vec2::new(out.x, out.z),
+                    )
                 });
-                mesh.triangle(material, if y > 0.0 { [middle, a, b] } else { [middle, b, a] });
+                mesh.triangle(
+                    material,
+                    if y > 0.0 {
+                        [middle, a, b]
+                    } else {
+                        [middle, b, a]
+                    },
+                );
             }
         }
     }
@@ -254,13 +341,16 @@ pub(in crate::scene) struct Ring {
 
 impl Ring {
     pub fn build(&self, mesh: &mut MeshBuilder, at: Vec3) {
-        let &Ring { major, minor, tube, .. } = self;
+        let &Ring {
+            major, minor, tube, ..
+        } = self;
         let (material, centre) = (mesh.paint(&self.material), self.centre + at);
         let axis = major.cross(minor).normalize_or(Vec3::Y);
         mesh.surface(material, self.segments, Vec2::new(4.0, 1.0), |u, v| {
             let (s, c) = (u * TAU).sin_cos();
             // The ellipse's own normal, so that thin links do not fold into themselves.
-            let out = (major * (c / major.length_squared()) + minor * (s / minor.length_squared())).normalize();
+            let out = (major * (c / major.length_squared()) + minor * (s / minor.length_squared()))
+                .normalize();
             let (height, width) = (v * TAU).sin_cos();
             centre + major * c + minor * s + out * (tube * width) + axis * (tube * height)
         });
@@ -281,7 +371,9 @@ pub(in crate::scene) struct Rod {
 
 impl Rod {
     pub fn build(&self, mesh: &mut MeshBuilder, at: Vec3) {
-        let &Rod { axis, half, radius, .. } = self;
+        let &Rod {
+            axis, half, radius, ..
+        } = self;
         let (material, centre) = (mesh.paint(&self.material), self.centre + at);
         let side = axis.any_orthonormal_vector();
         let other = axis.cross(side);

@@ -53,21 +53,43 @@ pub(in crate::scene) struct Arch {
 impl Arch {
     pub fn build(&self, mesh: &mut MeshBuilder) {
         const SEGMENTS: u32 = 24;
-        let &Arch { half, top, opening, rise, thick, .. } = self;
+        let &Arch {
+            half,
+            top,
+            opening,
+            rise,
+            thick,
+            ..
+        } = self;
         let (trim, material) = (mesh.paint(&self.trim), mesh.paint(&self.material));
-        let curve = |t: f32| Vec2::new(opening * (PI * (1.0 - t)).cos(), rise * (PI * t).sin().max(0.0));
+        let curve = |t: f32| {
+            Vec2::new(
+                opening * (PI * (1.0 - t)).cos(),
+                rise * (PI * t).sin().max(0.0),
+            )
+        };
         // Soffit, seen from below.
-        mesh.surface(trim, [SEGMENTS, 1], Vec2::new(3.0, 0.5), |u, v| curve(u).extend((v * 2.0 - 1.0) * thick));
+        mesh.surface(trim, [SEGMENTS, 1], Vec2::new(3.0, 0.5), |u, v| {
+            curve(u).extend((v * 2.0 - 1.0) * thick)
+        });
         for side in [-1.0f32, 1.0] {
             // From the arch up to the top, and the strips over the columns.
-            let point = |x: f32, y: f32| (Vec3::new(x, y, side * thick), Vec3::Z * side, Vec2::new(x, top - y) * 0.5);
+            let point = |x: f32, y: f32| {
+                (
+                    Vec3::new(x, y, side * thick),
+                    Vec3::Z * side,
+                    Vec2::new(x, top - y) * 0.5,
+                )
+            };
             let flip = |u: f32| if side > 0.0 { u } else { 1.0 - u };
             mesh.grid(material, [SEGMENTS, 1], |u, v| {
                 let p = curve(flip(u));
                 point(p.x, p.y + (top - p.y) * v)
             });
             for (from, to) in [(-half, -opening), (opening, half)] {
-                mesh.grid(material, [1, 1], |u, v| point(from + (to - from) * flip(u), top * v));
+                mesh.grid(material, [1, 1], |u, v| {
+                    point(from + (to - from) * flip(u), top * v)
+                });
             }
         }
         let spans = self.moulding.len().saturating_sub(1) as u32;
@@ -76,7 +98,11 @@ impl Arch {
                 let (from, to, t) = span(&self.moulding, v);
                 let out = from + (to - from) * t;
                 let angle = PI * u;
-                Vec2::new((opening + out.x) * angle.cos(), (rise + out.x) * angle.sin()).extend(-thick - out.y)
+                Vec2::new(
+                    (opening + out.x) * angle.cos(),
+                    (rise + out.x) * angle.sin(),
+                )
+                .extend(-thick - out.y)
             });
         }
     }
@@ -127,7 +153,17 @@ impl Moulding {
         let material = mesh.paint(&self.material);
         for span in self.section.windows(2) {
             let at = |side: f32, p: Vec2| Vec3::new(side * (self.half + p.x), p.y, p.x);
-            mesh.quad(material, [at(1.0, span[0]), at(-1.0, span[0]), at(-1.0, span[1]), at(1.0, span[1])], 1, 1.0);
+            mesh.quad(
+                material,
+                [
+                    at(1.0, span[0]),
+                    at(-1.0, span[0]),
+                    at(-1.0, span[1]),
+                    at(1.0, span[1]),
+                ],
+                1,
+                1.0,
+            );
         }
     }
 }
@@ -144,7 +180,9 @@ pub(in crate::scene) struct Capital {
 
 impl Capital {
     pub fn build(&self, mesh: &mut MeshBuilder) {
-        let &Capital { radius: r, foot, .. } = self;
+        let &Capital {
+            radius: r, foot, ..
+        } = self;
         let material = mesh.paint(&self.material);
         mesh.surface(material, [48, 10], Vec2::new(2.0, 0.5), |u, v| {
             let angle = -u * 2.0 * PI;
@@ -153,7 +191,11 @@ impl Capital {
             let curl = (PI * (v * 2.0 - row).clamp(0.0, 1.0)).sin() * 0.20;
             let leaf = (4.0 * angle + row * PI * 0.5).sin().abs();
             let radius = r * (bell + curl * leaf);
-            Vec3::new(radius * angle.cos(), foot + 1.68 * r * v, radius * angle.sin())
+            Vec3::new(
+                radius * angle.cos(),
+                foot + 1.68 * r * v,
+                radius * angle.sin(),
+            )
         });
     }
 }
@@ -178,12 +220,17 @@ impl Slope {
         let waves = (width / self.wave).round();
         let along = (low_b - low_a).normalize();
         let middle = (high_a + high_b) * 0.5;
-        mesh.surface(material, [(waves as u32).saturating_mul(6), 5], Vec2::ONE, |u, v| {
-            // Tiles run straight up the slope, so the wave depends on the place along the eaves, not on u.
-            let p = low_a.lerp(low_b, u).lerp(high_a.lerp(high_b, u), v);
-            let phase = (p - middle).dot(along) / width * waves * TAU;
-            p + Vec3::Y * (0.05 * phase.cos() + 0.05)
-        });
+        mesh.surface(
+            material,
+            [(waves as u32).saturating_mul(6), 5],
+            Vec2::ONE,
+            |u, v| {
+                // Tiles run straight up the slope, so the wave depends on the place along the eaves, not on u.
+                let p = low_a.lerp(low_b, u).lerp(high_a.lerp(high_b, u), v);
+                let phase = (p - middle).dot(along) / width * waves * TAU;
+                p + Vec3::Y * (0.05 * phase.cos() + 0.05)
+            },
+        );
     }
 }
 

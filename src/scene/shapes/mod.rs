@@ -83,10 +83,18 @@ impl<'a> MeshBuilder<'a> {
         if let Some(problem) = self.problem {
             return Err(problem);
         }
-        let mut mesh = Mesh { name: self.name, vertices: self.vertices, ..Mesh::default() };
+        let mut mesh = Mesh {
+            name: self.name,
+            vertices: self.vertices,
+            ..Mesh::default()
+        };
         for (material, indices) in self.triangles {
             let first_index = mesh.indices.len() as u32;
-            mesh.submeshes.push(Submesh { first_index, index_count: indices.len() as u32, material });
+            mesh.submeshes.push(Submesh {
+                first_index,
+                index_count: indices.len() as u32,
+                material,
+            });
             mesh.indices.extend(indices);
         }
         Ok(mesh)
@@ -94,13 +102,19 @@ impl<'a> MeshBuilder<'a> {
 
     /// Keeps what is wrong; the first counts.
     pub fn fail(&mut self, near: &str, message: String) {
-        self.problem.get_or_insert(Problem { near: near.into(), message });
+        self.problem.get_or_insert(Problem {
+            near: near.into(),
+            message,
+        });
     }
 
     /// Whether nothing is wrong and so many more vertices may be added.
     pub fn has_room(&mut self, more: u64) -> bool {
         if self.vertices.len() as u64 + more > self.room {
-            self.fail("", format!("with it there would be more than {MAX_VERTICES} vertices"));
+            self.fail(
+                "",
+                format!("with it there would be more than {MAX_VERTICES} vertices"),
+            );
         }
         self.problem.is_none()
     }
@@ -109,15 +123,25 @@ impl<'a> MeshBuilder<'a> {
     pub fn paint(&mut self, paint: &Paint) -> u32 {
         let name = match paint {
             Paint::One(name) => name,
-            Paint::Several(names) if !names.is_empty() => &names[self.number as usize % names.len()],
+            Paint::Several(names) if !names.is_empty() => {
+                &names[self.number as usize % names.len()]
+            }
             Paint::Several(_) => return self.no_material(""),
         };
-        self.materials.get_index_of(name).map_or_else(|| self.no_material(name), |i| i as u32)
+        self.materials
+            .get_index_of(name)
+            .map_or_else(|| self.no_material(name), |i| i as u32)
     }
 
     fn no_material(&mut self, name: &str) -> u32 {
         let known: Vec<&str> = self.materials.keys().map(String::as_str).collect();
-        self.fail(name, format!("no material '{name}'. Materials of this file: {}", known.join(", ")));
+        self.fail(
+            name,
+            format!(
+                "no material '{name}'. Materials of this file: {}",
+                known.join(", ")
+            ),
+        );
         0
     }
 
@@ -150,7 +174,12 @@ impl<'a> MeshBuilder<'a> {
 
     /// Grid over u and v in 0..1 of given positions, normals and texture coordinates.
     /// The front is where u goes right and v goes up.
-    pub fn grid(&mut self, material: u32, [nu, nv]: [u32; 2], point: impl Fn(f32, f32) -> (Vec3, Vec3, Vec2)) {
+    pub fn grid(
+        &mut self,
+        material: u32,
+        [nu, nv]: [u32; 2],
+        point: impl Fn(f32, f32) -> (Vec3, Vec3, Vec2),
+    ) {
         if !self.has_room((u64::from(nu) + 1).saturating_mul(u64::from(nv) + 1)) {
             return;
         }
@@ -172,7 +201,13 @@ impl<'a> MeshBuilder<'a> {
     }
 
     /// Smooth parametric surface over u and v in 0..1; normals come from its derivatives.
-    pub fn surface(&mut self, material: u32, divisions: [u32; 2], uv_scale: Vec2, point: impl Fn(f32, f32) -> Vec3) {
+    pub fn surface(
+        &mut self,
+        material: u32,
+        divisions: [u32; 2],
+        uv_scale: Vec2,
+        point: impl Fn(f32, f32) -> Vec3,
+    ) {
         const STEP: f32 = 1e-3;
         let normal_at = |u: f32, v: f32| {
             let du = point(u + STEP, v) - point(u - STEP, v);
@@ -183,8 +218,16 @@ impl<'a> MeshBuilder<'a> {
             // At a pole the derivative vanishes; a point beside it has nearly the same normal.
             let inner = v.clamp(5e-3, 1.0 - 5e-3);
             let normal = normal_at(u, v);
-            let normal = if normal.length_squared() > 1e-14 { normal } else { normal_at(u, inner) };
-            (point(u, v), normal.normalize_or(Vec3::Y), Vec2::new(u, 1.0 - v) * uv_scale)
+            let normal = if normal.length_squared() > 1e-14 {
+                normal
+            } else {
+                normal_at(u, inner)
+            };
+            (
+                point(u, v),
+                normal.normalize_or(Vec3::Y),
+                Vec2::new(u, 1.0 - v) * uv_scale,
+            )
         });
     }
 
@@ -192,7 +235,11 @@ impl<'a> MeshBuilder<'a> {
     pub fn cuboid(&mut self, material: u32, low: Vec3, high: Vec3, tile: f32, faces: [bool; 6]) {
         let p = |x: u8, y: u8, z: u8| {
             let pick = |i: u8, l: f32, h: f32| if i == 0 { l } else { h };
-            Vec3::new(pick(x, low.x, high.x), pick(y, low.y, high.y), pick(z, low.z, high.z))
+            Vec3::new(
+                pick(x, low.x, high.x),
+                pick(y, low.y, high.y),
+                pick(z, low.z, high.z),
+            )
         };
         let quads = [
             [p(0, 0, 0), p(0, 0, 1), p(0, 1, 1), p(0, 1, 0)],

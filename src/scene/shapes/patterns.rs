@@ -49,15 +49,23 @@ impl TryFrom<PictureFields> for Picture {
     fn try_from(fields: PictureFields) -> Result<Self, String> {
         match fields.size {
             1..=MAX_SIZE => Ok(Picture(fields)),
-            size => Err(format!("a texture of {size} texels: it must have from 1 to {MAX_SIZE} a side")),
+            size => Err(format!(
+                "a texture of {size} texels: it must have from 1 to {MAX_SIZE} a side"
+            )),
         }
     }
 }
 
 impl Picture {
     pub fn draw(&self) -> Texture {
-        let PictureFields { name, size, pattern } = &self.0;
-        let color = |texel: fn(f32, f32) -> Vec3| srgb(name, *size, Filter::Plain, |u, v| texel(u, v).extend(1.0));
+        let PictureFields {
+            name,
+            size,
+            pattern,
+        } = &self.0;
+        let color = |texel: fn(f32, f32) -> Vec3| {
+            srgb(name, *size, Filter::Plain, |u, v| texel(u, v).extend(1.0))
+        };
         match *pattern {
             Pattern::Ashlar => color(ashlar),
             Pattern::AshlarNormals(extent) => normals(name, *size, extent, ashlar_height),
@@ -66,20 +74,38 @@ impl Picture {
             Pattern::FloorTiles => color(floor_tile),
             Pattern::FloorNormals(extent) => normals(name, *size, extent, floor_height),
             Pattern::FloorRoughness => {
-                let rgba = texels(*size, |u, v| Vec4::new(1.0, floor_roughness(u, v), 0.0, 1.0));
-                texture_from_rgba(name, *size, *size, rgba, TextureFormat::Rgba8Unorm, Filter::Plain)
+                let rgba = texels(*size, |u, v| {
+                    Vec4::new(1.0, floor_roughness(u, v), 0.0, 1.0)
+                });
+                texture_from_rgba(
+                    name,
+                    *size,
+                    *size,
+                    rgba,
+                    TextureFormat::Rgba8Unorm,
+                    Filter::Plain,
+                )
             }
             Pattern::Marble => color(marble),
             Pattern::RoofTiles => color(terracotta),
             Pattern::Wood => color(wood),
-            Pattern::Cloth(of) => srgb(name, *size, Filter::Plain, |u, v| cloth(u, v, of).extend(1.0)),
+            Pattern::Cloth(of) => srgb(name, *size, Filter::Plain, |u, v| {
+                cloth(u, v, of).extend(1.0)
+            }),
             Pattern::Leaves => srgb(name, *size, Filter::Masked(0.5), leaves),
         }
     }
 }
 
 fn srgb(name: &str, size: u32, filter: Filter, texel: impl Fn(f32, f32) -> Vec4) -> Texture {
-    texture_from_rgba(name, size, size, texels(size, texel), TextureFormat::Rgba8Srgb, filter)
+    texture_from_rgba(
+        name,
+        size,
+        size,
+        texels(size, texel),
+        TextureFormat::Rgba8Srgb,
+        filter,
+    )
 }
 
 /// A normal map from heights in metres over a square of `extent` metres.
@@ -92,7 +118,14 @@ fn normals(name: &str, size: u32, extent: f32, height: fn(f32, f32) -> f32) -> T
         let slope = Vec2::new(-du, dv) / (2.0 * step * extent);
         (slope.extend(1.0).normalize() * 0.5 + 0.5).extend(1.0)
     });
-    texture_from_rgba(name, size, size, rgba, TextureFormat::Rgba8Unorm, Filter::Normal)
+    texture_from_rgba(
+        name,
+        size,
+        size,
+        rgba,
+        TextureFormat::Rgba8Unorm,
+        Filter::Normal,
+    )
 }
 
 fn texels(size: u32, texel: impl Fn(f32, f32) -> Vec4) -> Vec<u8> {
@@ -123,7 +156,10 @@ fn masonry(u: f32, v: f32, rows: i32, columns: i32, joint: f32) -> Block {
     let edge_x = fx.min(1.0 - fx) / columns as f32;
     let edge_y = fy.min(1.0 - fy) / rows as f32;
     let depth = ((edge_x.min(edge_y) - joint) / joint).clamp(0.0, 1.0);
-    Block { random: hash(column, row, 7), depth }
+    Block {
+        random: hash(column, row, 7),
+        depth,
+    }
 }
 
 /// Warm limestone blocks.
@@ -183,7 +219,11 @@ fn tile(u: f32, v: f32) -> (i32, i32, f32) {
     let (x, y) = (u * 4.0, v * 4.0);
     let (fx, fy) = (x - x.floor(), y - y.floor());
     let edge = fx.min(1.0 - fx).min(fy).min(1.0 - fy);
-    (x.floor() as i32, y.floor() as i32, ((edge - 0.012) / 0.012).clamp(0.0, 1.0))
+    (
+        x.floor() as i32,
+        y.floor() as i32,
+        ((edge - 0.012) / 0.012).clamp(0.0, 1.0),
+    )
 }
 
 /// Thin dark lines where noise crosses its middle.
@@ -212,7 +252,12 @@ fn wood(u: f32, v: f32) -> Vec3 {
     let edge = (u * 6.0).fract();
     let grain = value(u, v * 0.12, 96, 70 + plank as u32) * 0.6 + fractal(u, v, 8, 71) * 0.4;
     let tone = Vec3::new(0.34, 0.21, 0.12).lerp(Vec3::new(0.52, 0.35, 0.21), grain);
-    tone * (0.85 + 0.3 * hash(plank, 0, 72)) * if !(0.03..=0.97).contains(&edge) { 0.45 } else { 1.0 }
+    tone * (0.85 + 0.3 * hash(plank, 0, 72))
+        * if !(0.03..=0.97).contains(&edge) {
+            0.45
+        } else {
+            1.0
+        }
 }
 
 /// Woven cloth with a pattern of lozenges; over the whole cloth, so it has hems and does not tile.
@@ -233,7 +278,11 @@ fn leaves(u: f32, v: f32) -> Vec4 {
     let p = Vec2::new(u - 0.5, 1.0 - v);
     let stem_x = 0.03 * (p.y * 7.0).sin();
     let mut color = Vec3::new(0.20, 0.32, 0.10);
-    let mut alpha: f32 = if (p.x - stem_x).abs() < 0.012 && p.y < 0.85 { 1.0 } else { 0.0 };
+    let mut alpha: f32 = if (p.x - stem_x).abs() < 0.012 && p.y < 0.85 {
+        1.0
+    } else {
+        0.0
+    };
     for i in 0..7 {
         let height = 0.10 + 0.115 * i as f32;
         let side = if i == 6 { 0.0 } else { [1.0, -1.0][i % 2] };

@@ -30,7 +30,10 @@ pub(in crate::scene) struct Vase {
 
 impl Vase {
     pub fn build(&self, mesh: &mut MeshBuilder) {
-        let (material, seed) = (mesh.paint(&self.material), self.seed.wrapping_add(mesh.number));
+        let (material, seed) = (
+            mesh.paint(&self.material),
+            self.seed.wrapping_add(mesh.number),
+        );
         let (depth, count, winding) = self.flutes;
         let spans = self.radii.len().saturating_sub(1);
         mesh.surface(material, [self.sides, self.rows], Vec2::ONE, |u, v| {
@@ -71,7 +74,12 @@ impl Specks {
             let side = out.any_orthonormal_vector();
             let up = out.cross(side);
             let at = self.centre + at + out * self.radius;
-            flat_triangle(mesh, material, [at, at + side * self.size, at + up * self.size], [Vec2::ZERO; 3]);
+            flat_triangle(
+                mesh,
+                material,
+                [at, at + side * self.size, at + up * self.size],
+                [Vec2::ZERO; 3],
+            );
             if mesh.problem.is_some() {
                 return;
             }

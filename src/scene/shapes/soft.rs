@@ -23,7 +23,13 @@ pub(in crate::scene) struct Banner {
 
 impl Banner {
     pub fn build(&self, mesh: &mut MeshBuilder) {
-        let &Banner { top, bottom, half, phase, .. } = self;
+        let &Banner {
+            top,
+            bottom,
+            half,
+            phase,
+            ..
+        } = self;
         let material = mesh.paint(&self.material);
         mesh.surface(material, [32, 28], Vec2::ONE, |u, v| {
             let (x, drop) = (u * 2.0 - 1.0, 1.0 - v);
@@ -34,7 +40,11 @@ impl Banner {
             let narrow = 1.0 - 0.08 * (PI * drop).sin();
             // The lower edge hangs in a shallow point.
             let edge = 0.28 * (1.0 - x.abs()) * drop;
-            Vec3::new(x * half * narrow, bottom + (top - bottom) * v - edge, depth * fold + swing)
+            Vec3::new(
+                x * half * narrow,
+                bottom + (top - bottom) * v - edge,
+                depth * fold + swing,
+            )
         });
     }
 }
@@ -54,7 +64,13 @@ pub(in crate::scene) struct Curtain {
 
 impl Curtain {
     pub fn build(&self, mesh: &mut MeshBuilder) {
-        let &Curtain { top, bottom, tie, side, .. } = self;
+        let &Curtain {
+            top,
+            bottom,
+            tie,
+            side,
+            ..
+        } = self;
         let material = mesh.paint(&self.material);
         mesh.surface(material, [28, 18], Vec2::new(0.7, 1.0), |u, v| {
             let y = bottom + (top - bottom) * v;
@@ -63,7 +79,11 @@ impl Curtain {
             let below = ((tie - v) / tie).max(0.0);
             let width = 0.24 + 0.80 * above.powf(1.7) + 0.16 * below.sqrt();
             let depth = 0.035 + 0.03 * (1.0 - above);
-            Vec3::new(side.signum() * (side.abs() - width * u), y, depth * (u * 9.0 * PI).sin())
+            Vec3::new(
+                side.signum() * (side.abs() - width * u),
+                y,
+                depth * (u * 9.0 * PI).sin(),
+            )
         });
     }
 }
@@ -93,10 +113,22 @@ impl Chain {
             let (a, b) = (curve(i), curve(i + 1));
             let along = b - a;
             let flat = along.any_orthonormal_vector();
-            let across = if i % 2 == 0 { flat } else { along.cross(flat).normalize() };
+            let across = if i % 2 == 0 {
+                flat
+            } else {
+                along.cross(flat).normalize()
+            };
             let (centre, major, minor) = ((a + b) * 0.5, along * 0.62, across * 0.032);
             let material = self.material.clone();
-            Ring { material, centre, major, minor, tube: 0.011, segments: [8, 4] }.build(mesh, Vec3::ZERO);
+            Ring {
+                material,
+                centre,
+                major,
+                minor,
+                tube: 0.011,
+                segments: [8, 4],
+            }
+            .build(mesh, Vec3::ZERO);
             if mesh.problem.is_some() {
                 return;
             }
@@ -126,11 +158,27 @@ impl Crown {
             let out = Vec3::new(flat * turn.cos(), height, flat * turn.sin());
             let place = self.centre + at + out * self.radii * random.unit().powf(0.4);
             let size = random.range(self.size.0, self.size.1);
-            let along = (out + Vec3::new(random.range(-1.0, 1.0), random.range(-1.2, 0.4), random.range(-1.0, 1.0)))
-                .normalize_or(Vec3::Y);
-            let side = Quat::from_axis_angle(along, random.unit() * TAU) * along.any_orthonormal_vector();
+            let along = (out
+                + Vec3::new(
+                    random.range(-1.0, 1.0),
+                    random.range(-1.2, 0.4),
+                    random.range(-1.0, 1.0),
+                ))
+            .normalize_or(Vec3::Y);
+            let side =
+                Quat::from_axis_angle(along, random.unit() * TAU) * along.any_orthonormal_vector();
             let (across, up) = (side * (0.5 * size), along * size);
-            mesh.quad(leaf, [place - across, place + across, place + across + up, place - across + up], 1, size);
+            mesh.quad(
+                leaf,
+                [
+                    place - across,
+                    place + across,
+                    place + across + up,
+                    place - across + up,
+                ],
+                1,
+                size,
+            );
             if mesh.problem.is_some() {
                 return;
             }
@@ -173,7 +221,8 @@ impl Sprigs {
             let (turn, rise) = (random.unit() * TAU, random.unit());
             let out = Vec3::new(turn.cos(), 0.0, turn.sin());
             let width = 0.42 * (PI * (0.12 + 0.8 * rise)).sin();
-            let root = foot + Vec3::Y * (0.52 + tall * rise) + out * (width * random.range(0.2, 0.9));
+            let root =
+                foot + Vec3::Y * (0.52 + tall * rise) + out * (width * random.range(0.2, 0.9));
             let lift = random.range(0.2, 1.4) + rise * 0.6;
             let size = random.range(0.22, 0.36);
             if !self.card(mesh, root, (out + Vec3::Y * lift).normalize(), size) {
@@ -209,7 +258,11 @@ impl Sprigs {
                 let swing = 0.09 * (t * 5.0 + sway).sin();
                 let depth = 0.07 + 0.22 * (t * 4.0).min(1.0) + random.range(-0.03, 0.05);
                 let root = top + Vec3::new(x + swing, -length * t, toward * depth);
-                let along = Vec3::new(random.range(-0.8, 0.8), -0.8, toward * random.range(0.1, 0.8));
+                let along = Vec3::new(
+                    random.range(-0.8, 0.8),
+                    -0.8,
+                    toward * random.range(0.1, 0.8),
+                );
                 let size = random.range(0.15, 0.25);
                 if !self.card(mesh, root, along.normalize(), size) {
                     return;

@@ -30,11 +30,23 @@ pub(in crate::scene) struct Hollow {
 
 impl Hollow {
     pub fn carve(&self, solid: &mut Solid, mesh: &mut MeshBuilder, at: Vec3) {
-        if let Some(face) = self.faces.keys().find(|face| !FACES.contains(&face.as_str())) {
-            mesh.fail(face, format!("a hollow has no face '{face}': it is one of {}", FACES.join(", ")));
+        if let Some(face) = self
+            .faces
+            .keys()
+            .find(|face| !FACES.contains(&face.as_str()))
+        {
+            mesh.fail(
+                face,
+                format!(
+                    "a hollow has no face '{face}': it is one of {}",
+                    FACES.join(", ")
+                ),
+            );
         }
         let lining = FACES.map(|face| mesh.paint(self.faces.get(face).unwrap_or(&self.material)));
-        solid.boxes.push((self.low + at, self.high + at, Stuff::Hollow(lining)));
+        solid
+            .boxes
+            .push((self.low + at, self.high + at, Stuff::Hollow(lining)));
     }
 }
 
@@ -60,16 +72,21 @@ impl Solid {
     /// in cells times boxes.
     pub fn build(&self, mesh: &mut MeshBuilder) -> usize {
         let cuts = [0, 1, 2].map(|axis| self.cuts(axis));
-        let work = cuts.iter().fold(self.boxes.len(), |work, cuts| work.saturating_mul(cuts.len()));
+        let work = cuts.iter().fold(self.boxes.len(), |work, cuts| {
+            work.saturating_mul(cuts.len())
+        });
         if self.boxes.is_empty() || work > MAX_WORK {
             mesh.fail("", format!("a solid needs at least one box, and its cells times boxes be at most {MAX_WORK}"));
             return 0;
         }
-        let corner = |cell: [usize; 3]| Vec3::from_array([0, 1, 2].map(|axis| cuts[axis][cell[axis]]));
+        let corner =
+            |cell: [usize; 3]| Vec3::from_array([0, 1, 2].map(|axis| cuts[axis][cell[axis]]));
         let stuff = |cell: [usize; 3]| {
             // The last cut ends the grid; one below the first wraps around to far beyond the last.
             let inside = (0..3).all(|axis| cell[axis] < cuts[axis].len() - 1);
-            inside.then(|| self.at((corner(cell) + corner(cell.map(|i| i + 1))) * 0.5)).flatten()
+            inside
+                .then(|| self.at((corner(cell) + corner(cell.map(|i| i + 1))) * 0.5))
+                .flatten()
         };
         let [nx, ny, nz] = [0, 1, 2].map(|axis| cuts[axis].len() - 1);
         for cell in (0..nx * ny * nz).map(|i| [i % nx, i / nx % ny, i / nx / ny]) {
@@ -78,14 +95,24 @@ impl Solid {
             };
             for face in 0..6 {
                 let mut beside = cell;
-                beside[face / 2] = if face % 2 == 0 { cell[face / 2].wrapping_sub(1) } else { cell[face / 2] + 1 };
+                beside[face / 2] = if face % 2 == 0 {
+                    cell[face / 2].wrapping_sub(1)
+                } else {
+                    cell[face / 2] + 1
+                };
                 let material = match stuff(beside) {
                     Some(Stuff::Solid(_)) => continue,
                     Some(Stuff::Hollow(lining)) => lining[face],
                     None => material,
                 };
                 let only = [0, 1, 2, 3, 4, 5].map(|i| i == face);
-                mesh.cuboid(material, corner(cell), corner(cell.map(|i| i + 1)), 1.0, only);
+                mesh.cuboid(
+                    material,
+                    corner(cell),
+                    corner(cell.map(|i| i + 1)),
+                    1.0,
+                    only,
+                );
             }
         }
         work
@@ -93,7 +120,11 @@ impl Solid {
 
     /// Coordinates at which a box begins or ends, in order.
     fn cuts(&self, axis: usize) -> Vec<f32> {
-        let mut cuts: Vec<f32> = self.boxes.iter().flat_map(|(low, high, _)| [low[axis], high[axis]]).collect();
+        let mut cuts: Vec<f32> = self
+            .boxes
+            .iter()
+            .flat_map(|(low, high, _)| [low[axis], high[axis]])
+            .collect();
         cuts.sort_by(f32::total_cmp);
         cuts.dedup_by(|b, a| *b - *a < SAME_CUT);
         cuts
@@ -101,6 +132,10 @@ impl Solid {
 
     fn at(&self, point: Vec3) -> Option<Stuff> {
         let holds = |low: Vec3, high: Vec3| low.cmplt(point).all() && point.cmplt(high).all();
-        self.boxes.iter().rev().find(|(low, high, _)| holds(*low, *high)).map(|entry| entry.2)
+        self.boxes
+            .iter()
+            .rev()
+            .find(|(low, high, _)| holds(*low, *high))
+            .map(|entry| entry.2)
     }
 }

@@ -19,10 +19,15 @@ pub(in crate::scene) enum Holes {
 impl Texture {
     /// Whether a picture has normals and not heights: it has colour, and its texels are of about unit length.
     pub(in crate::scene) fn holds_normals(&self) -> bool {
-        if matches!(self.format, TextureFormat::Bc4Unorm | TextureFormat::Bc5Unorm) {
+        if matches!(
+            self.format,
+            TextureFormat::Bc4Unorm | TextureFormat::Bc5Unorm
+        ) {
             return self.format == TextureFormat::Bc5Unorm;
         }
-        let Ok(rgba) = first_level_rgba(self) else { return false };
+        let Ok(rgba) = first_level_rgba(self) else {
+            return false;
+        };
         let texels = rgba.as_chunks::<4>().0;
         let step = texels.len().div_ceil(SAMPLES).max(1);
         let (mut count, mut grey, mut unit) = (0, 0, 0);
@@ -39,12 +44,22 @@ impl Texture {
 
     /// Whether the picture's alpha has holes.
     pub(in crate::scene) fn holes(&self) -> Holes {
-        if matches!(self.format, TextureFormat::Bc4Unorm | TextureFormat::Bc5Unorm) {
+        if matches!(
+            self.format,
+            TextureFormat::Bc4Unorm | TextureFormat::Bc5Unorm
+        ) {
             return Holes::None;
         }
-        let Ok(rgba) = first_level_rgba(self) else { return Holes::None };
+        let Ok(rgba) = first_level_rgba(self) else {
+            return Holes::None;
+        };
         let texels = rgba.as_chunks::<4>().0;
-        match texels.par_iter().with_min_len(1 << 14).filter(|texel| texel[3] < 128).count() {
+        match texels
+            .par_iter()
+            .with_min_len(1 << 14)
+            .filter(|texel| texel[3] < 128)
+            .count()
+        {
             0 => Holes::None,
             all if all == texels.len() => Holes::All,
             _ => Holes::Some,
@@ -55,7 +70,13 @@ impl Texture {
     pub(in crate::scene) fn masked(self) -> Texture {
         match self.format {
             TextureFormat::Rgba8Srgb | TextureFormat::Rgba8Unorm => {
-                let Texture { name, width, height, format, mips } = self;
+                let Texture {
+                    name,
+                    width,
+                    height,
+                    format,
+                    mips,
+                } = self;
                 let level = mips.into_iter().next().unwrap_or_default();
                 texture_from_rgba(&name, width, height, level, format, Filter::Masked(0.5))
             }
@@ -69,12 +90,20 @@ mod tests {
     use super::*;
 
     fn picture(texel: impl Fn(u32) -> [u8; 4]) -> Texture {
-        texture_from_rgba("a", 16, 16, (0..256).flat_map(texel).collect(), TextureFormat::Rgba8Unorm, Filter::Plain)
+        texture_from_rgba(
+            "a",
+            16,
+            16,
+            (0..256).flat_map(texel).collect(),
+            TextureFormat::Rgba8Unorm,
+            Filter::Plain,
+        )
     }
 
     fn rough(i: u32) -> [u8; 4] {
         let (x, y) = ((i as f32).sin() * 0.6, (i as f32 * 0.7).cos() * 0.6);
-        let [x, y, z] = [x, y, (1.0 - x * x - y * y).sqrt()].map(|c| (c * 127.5 + 127.5).round() as u8);
+        let [x, y, z] =
+            [x, y, (1.0 - x * x - y * y).sqrt()].map(|c| (c * 127.5 + 127.5).round() as u8);
         [x, y, z, 255]
     }
 
@@ -85,7 +114,11 @@ mod tests {
             ("flat", |_| [128, 128, 255, 255], true),
             ("rough", rough, true),
             ("leans by 45 degrees", |_| [128, 218, 218, 255], true),
-            ("blue is constant", |i| [(100 + i % 56) as u8, (90 + i % 64) as u8, 255, 255], true),
+            (
+                "blue is constant",
+                |i| [(100 + i % 56) as u8, (90 + i % 64) as u8, 255, 255],
+                true,
+            ),
             ("black", |_| [0, 0, 0, 255], false),
             ("white", |_| [255; 4], false),
             ("heights", |i| [i as u8, i as u8, i as u8, 255], false),
@@ -99,7 +132,10 @@ mod tests {
 
     #[test]
     fn holes_are_texels_below_half() {
-        assert_eq!(picture(|i| [9, 9, 9, if i > 3 { 255 } else { 127 }]).holes(), Holes::Some);
+        assert_eq!(
+            picture(|i| [9, 9, 9, if i > 3 { 255 } else { 127 }]).holes(),
+            Holes::Some
+        );
         assert_eq!(picture(|_| [9, 9, 9, 128]).holes(), Holes::None);
         assert_eq!(picture(|_| [9, 9, 9, 0]).holes(), Holes::All);
     }

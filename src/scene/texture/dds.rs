@@ -26,25 +26,44 @@ pub(super) fn texture(
         width.max(height) <= max_side
     };
     let first = (0..levels.len()).find(fits).ok_or_else(|| {
-        format!("{}x{} is over {max_side} and it stores no smaller levels; store its mips", file.width, file.height)
+        format!(
+            "{}x{} is over {max_side} and it stores no smaller levels; store its mips",
+            file.width, file.height
+        )
     })?;
     let (width, height) = level_size(&file, first);
     if first > 0 {
-        warnings.push(Notice::of_size(name, (file.width, file.height), (width, height)));
+        warnings.push(Notice::of_size(
+            name,
+            (file.width, file.height),
+            (width, height),
+        ));
     }
     let mips = levels.into_iter().skip(first).map(<[u8]>::to_vec).collect();
-    Ok(Texture { name: name.into(), width, height, format, mips })
+    Ok(Texture {
+        name: name.into(),
+        width,
+        height,
+        format,
+        mips,
+    })
 }
 
 /// Level 0 of a DDS file as RGBA8.
 pub(super) fn pixels(bytes: &[u8]) -> Result<RgbaImage, String> {
     let file = parse(bytes)?;
     let rgba = decode(file.format, file.width, file.height, file.levels)?;
-    RgbaImage::from_raw(file.width, file.height, rgba).ok_or_else(|| "its data is shorter than its size says".into())
+    RgbaImage::from_raw(file.width, file.height, rgba)
+        .ok_or_else(|| "its data is shorter than its size says".into())
 }
 
 /// RGBA8 texels of one block-compressed level.
-pub(super) fn decompress(format: TextureFormat, width: u32, height: u32, level: &[u8]) -> Result<Vec<u8>, String> {
+pub(super) fn decompress(
+    format: TextureFormat,
+    width: u32,
+    height: u32,
+    level: &[u8],
+) -> Result<Vec<u8>, String> {
     use TextureFormat::*;
     let format = match format {
         Rgba8Srgb | Rgba8Unorm => return Ok(level.to_vec()),
@@ -68,16 +87,27 @@ struct File<'a> {
 
 fn parse(bytes: &[u8]) -> Result<File<'_>, String> {
     let dds = Dds::read(bytes).map_err(|error| format!("the DDS header is damaged ({error})"))?;
-    let format = dds_image_format(&dds).map_err(|_| "its DDS pixel format is not supported; store it as BC7")?;
+    let format = dds_image_format(&dds)
+        .map_err(|_| "its DDS pixel format is not supported; store it as BC7")?;
     let (width, height) = (dds.get_width(), dds.get_height());
     if width == 0 || height == 0 || width > 16384 || height > 16384 {
-        return Err(format!("its size {width}x{height} is not between 1 and 16384"));
+        return Err(format!(
+            "its size {width}x{height} is not between 1 and 16384"
+        ));
     }
     let full_chain = 32 - width.max(height).leading_zeros();
     let level_count = dds.get_num_mipmap_levels().clamp(1, full_chain);
     // The levels follow the header to the end of the file.
-    let levels = bytes.get(bytes.len() - dds.data.len()..).unwrap_or_default();
-    Ok(File { format, width, height, level_count, levels })
+    let levels = bytes
+        .get(bytes.len() - dds.data.len()..)
+        .unwrap_or_default();
+    Ok(File {
+        format,
+        width,
+        height,
+        level_count,
+        levels,
+    })
 }
 
 /// The texture format that keeps the file's blocks, or none where they must be decoded.
@@ -105,7 +135,10 @@ fn stored_levels<'a>(file: &File<'a>, format: TextureFormat) -> Result<Vec<&'a [
     for level in 0..file.level_count as usize {
         let (width, height) = level_size(file, level);
         let Some((bytes, after)) = rest.split_at_checked(format.level_bytes(width, height)) else {
-            return Err(format!("the file ends inside mip level {level} of {}", file.level_count));
+            return Err(format!(
+                "the file ends inside mip level {level} of {}",
+                file.level_count
+            ));
         };
         levels.push(bytes);
         rest = after;
@@ -122,7 +155,11 @@ fn uncompressed(
     warnings: &mut Vec<Notice>,
 ) -> Result<Texture, String> {
     let rgba = decode(file.format, file.width, file.height, file.levels)?;
-    let format = if srgb { TextureFormat::Rgba8Srgb } else { TextureFormat::Rgba8Unorm };
+    let format = if srgb {
+        TextureFormat::Rgba8Srgb
+    } else {
+        TextureFormat::Rgba8Unorm
+    };
     let from = (file.width, file.height);
     let mut to = from;
     while to.0.max(to.1) > max_side {
@@ -137,8 +174,23 @@ fn uncompressed(
 }
 
 /// Level 0 of a format as RGBA8.
-pub(super) fn decode(image_format: ImageFormat, width: u32, height: u32, data: &[u8]) -> Result<Vec<u8>, String> {
-    let surface = Surface { width, height, depth: 1, layers: 1, mipmaps: 1, image_format, data };
-    let decoded = surface.decode_rgba8().map_err(|error| format!("its data is damaged ({error})"))?;
+pub(super) fn decode(
+    image_format: ImageFormat,
+    width: u32,
+    height: u32,
+    data: &[u8],
+) -> Result<Vec<u8>, String> {
+    let surface = Surface {
+        width,
+        height,
+        depth: 1,
+        layers: 1,
+        mipmaps: 1,
+        image_format,
+        data,
+    };
+    let decoded = surface
+        .decode_rgba8()
+        .map_err(|error| format!("its data is damaged ({error})"))?;
     Ok(decoded.data)
 }

@@ -8,11 +8,18 @@ use image::{DynamicImage, ImageFormat, ImageReader, Limits, RgbaImage};
 
 use crate::files::read_input;
 
-use super::{Filter, Notice, Recipe, Source, Texture, TextureFormat, dds, ktx2, mips, texture_from_rgba};
+use super::{
+    Filter, Notice, Recipe, Source, Texture, TextureFormat, dds, ktx2, mips, texture_from_rgba,
+};
 
 /// Formats of image files, besides DDS and KTX2.
-const READ: [ImageFormat; 5] =
-    [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP, ImageFormat::Tga, ImageFormat::Bmp];
+const READ: [ImageFormat; 5] = [
+    ImageFormat::Png,
+    ImageFormat::Jpeg,
+    ImageFormat::WebP,
+    ImageFormat::Tga,
+    ImageFormat::Bmp,
+];
 /// Largest width and height of an image file.
 pub(super) const MAX_FILE_SIDE: u32 = 16384;
 /// Largest memory of a decoded image.
@@ -27,7 +34,9 @@ type Failure = (String, String);
 pub(super) fn cook(recipe: &Recipe, warnings: &mut Vec<Notice>) -> Result<Texture, Failure> {
     match recipe {
         Recipe::Color { image, mask } => {
-            let filter = mask.map_or(Filter::Plain, |cutoff| Filter::Masked(f32::from(cutoff) / 255.0));
+            let filter = mask.map_or(Filter::Plain, |cutoff| {
+                Filter::Masked(f32::from(cutoff) / 255.0)
+            });
             single(image, true, filter, warnings)
         }
         Recipe::Normal { image } => single(image, false, Filter::Normal, warnings),
@@ -36,9 +45,10 @@ pub(super) fn cook(recipe: &Recipe, warnings: &mut Vec<Notice>) -> Result<Textur
             color_and_mask(color.as_ref(), alpha, f32::from(*mask) / 255.0, warnings)
         }
         Recipe::Glossiness { image, factor } => glossiness(image, *factor, warnings),
-        Recipe::RoughnessAndMetallic { roughness, metallic } => {
-            roughness_and_metallic(roughness.as_ref(), metallic.as_ref(), warnings)
-        }
+        Recipe::RoughnessAndMetallic {
+            roughness,
+            metallic,
+        } => roughness_and_metallic(roughness.as_ref(), metallic.as_ref(), warnings),
     }
 }
 
@@ -73,20 +83,36 @@ impl SmallPicture {
 impl Texture {
     /// The finest level that is at most so many texels wide and high; none where the texture has none or cannot be decoded.
     pub fn small(&self, most: u32) -> Option<SmallPicture> {
-        let sized = (0u32..)
-            .zip(&self.mips)
-            .map(|(level, bytes)| ((self.width >> level).max(1), (self.height >> level).max(1), bytes));
-        let (width, height, bytes) = sized.clone().find(|(w, h, _)| w.max(h) <= &most).or_else(|| sized.last())?;
+        let sized = (0u32..).zip(&self.mips).map(|(level, bytes)| {
+            (
+                (self.width >> level).max(1),
+                (self.height >> level).max(1),
+                bytes,
+            )
+        });
+        let (width, height, bytes) = sized
+            .clone()
+            .find(|(w, h, _)| w.max(h) <= &most)
+            .or_else(|| sized.last())?;
         let rgba = match self.format {
             TextureFormat::Rgba8Srgb | TextureFormat::Rgba8Unorm => Cow::Borrowed(bytes),
             format => Cow::Owned(dds::decompress(format, width, height, bytes).ok()?),
         };
         let texels: Vec<Vec4> = mips::decode(&rgba, self.format.is_srgb());
-        (texels.len() == (width * height) as usize).then_some(SmallPicture { width, height, texels })
+        (texels.len() == (width * height) as usize).then_some(SmallPicture {
+            width,
+            height,
+            texels,
+        })
     }
 }
 
-fn single(image: &Source, srgb: bool, filter: Filter, warnings: &mut Vec<Notice>) -> Result<Texture, Failure> {
+fn single(
+    image: &Source,
+    srgb: bool,
+    filter: Filter,
+    warnings: &mut Vec<Notice>,
+) -> Result<Texture, Failure> {
     let fail = |problem: String| (image.name(), problem);
     let bytes = read(image).map_err(fail)?;
     if is_dds(&bytes) {
@@ -115,7 +141,13 @@ fn color_and_mask(
         pixel.0[3] = if has_alpha { from.0[3] } else { from.0[0] };
     }
     let name = color.unwrap_or(alpha).name();
-    Ok(finish(result, &name, true, Filter::Masked(cutoff), warnings))
+    Ok(finish(
+        result,
+        &name,
+        true,
+        Filter::Masked(cutoff),
+        warnings,
+    ))
 }
 
 fn roughness_and_metallic(
@@ -125,14 +157,32 @@ fn roughness_and_metallic(
 ) -> Result<Texture, Failure> {
     let rough = roughness.map(pixels).transpose()?;
     let metal = metallic.map(pixels).transpose()?;
-    let width = rough.iter().chain(&metal).map(|i| i.width()).max().unwrap_or(1);
-    let height = rough.iter().chain(&metal).map(|i| i.height()).max().unwrap_or(1);
+    let width = rough
+        .iter()
+        .chain(&metal)
+        .map(|i| i.width())
+        .max()
+        .unwrap_or(1);
+    let height = rough
+        .iter()
+        .chain(&metal)
+        .map(|i| i.height())
+        .max()
+        .unwrap_or(1);
     let red = |image: &Option<RgbaImage>, x: u32, y: u32| match image {
-        Some(image) => image.get_pixel(scaled(x, width, image.width()), scaled(y, height, image.height())).0[0],
+        Some(image) => {
+            image
+                .get_pixel(
+                    scaled(x, width, image.width()),
+                    scaled(y, height, image.height()),
+                )
+                .0[0]
+        }
         None => 255,
     };
-    let merged =
-        RgbaImage::from_fn(width, height, |x, y| image::Rgba([255, red(&rough, x, y), red(&metal, x, y), 255]));
+    let merged = RgbaImage::from_fn(width, height, |x, y| {
+        image::Rgba([255, red(&rough, x, y), red(&metal, x, y), 255])
+    });
     let name = roughness.or(metallic).map(Source::name).unwrap_or_default();
     Ok(finish(merged, &name, false, Filter::Plain, warnings))
 }
@@ -143,7 +193,13 @@ fn glossiness(image: &Source, factor: u8, warnings: &mut Vec<Notice>) -> Result<
         let gloss = u32::from(pixel.0[3]) * u32::from(factor) / 255;
         pixel.0 = [255, 255 - gloss as u8, 255, 255];
     }
-    Ok(finish(texels, &image.name(), false, Filter::Plain, warnings))
+    Ok(finish(
+        texels,
+        &image.name(),
+        false,
+        Filter::Plain,
+        warnings,
+    ))
 }
 
 fn scaled(x: u32, from: u32, to: u32) -> u32 {
@@ -153,14 +209,20 @@ fn scaled(x: u32, from: u32, to: u32) -> u32 {
 fn pixels(source: &Source) -> Result<RgbaImage, Failure> {
     let fail = |problem: String| (source.name(), problem);
     let bytes = read(source).map_err(fail)?;
-    if is_dds(&bytes) { dds::pixels(&bytes).map_err(fail) } else { decode(&bytes, &source.name()).map_err(fail) }
+    if is_dds(&bytes) {
+        dds::pixels(&bytes).map_err(fail)
+    } else {
+        decode(&bytes, &source.name()).map_err(fail)
+    }
 }
 
 fn read(source: &Source) -> Result<Cow<'_, [u8]>, String> {
     match source {
         Source::File(path) => match read_input(path, MAX_FILE_BYTES) {
             Ok(bytes) => Ok(Cow::Owned(bytes)),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err("the file does not exist".into()),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                Err("the file does not exist".into())
+            }
             Err(error) => Err(format!("cannot read it: {error}")),
         },
         Source::Bytes(_, bytes) => Ok(Cow::Borrowed(bytes)),
@@ -178,28 +240,51 @@ fn decode(bytes: &[u8], name: &str) -> Result<RgbaImage, String> {
         return ktx2::pixels(bytes);
     }
     let by_name = || ImageFormat::from_path(name).ok();
-    let format =
-        image::guess_format(bytes).ok().or_else(by_name).ok_or("not a PNG, JPEG, WebP, TGA, BMP, DDS or KTX2 image")?;
+    let format = image::guess_format(bytes)
+        .ok()
+        .or_else(by_name)
+        .ok_or("not a PNG, JPEG, WebP, TGA, BMP, DDS or KTX2 image")?;
     if !READ.contains(&format) {
-        return Err(format!("{format:?} images are not supported; convert it to PNG"));
+        return Err(format!(
+            "{format:?} images are not supported; convert it to PNG"
+        ));
     }
     decode_limited(bytes, format).map(DynamicImage::into_rgba8)
 }
 
 /// An image file of a format, which may not be larger than files may be.
-pub(in crate::scene) fn decode_limited(bytes: &[u8], format: ImageFormat) -> Result<DynamicImage, String> {
+pub(in crate::scene) fn decode_limited(
+    bytes: &[u8],
+    format: ImageFormat,
+) -> Result<DynamicImage, String> {
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_FILE_SIDE);
     limits.max_image_height = Some(MAX_FILE_SIDE);
     limits.max_alloc = Some(MAX_FILE_BYTES);
     reader.limits(limits);
-    let image = reader.decode().map_err(|error| format!("the image is damaged or too large ({error})"))?;
-    if image.width() == 0 || image.height() == 0 { Err("the image is empty".into()) } else { Ok(image) }
+    let image = reader
+        .decode()
+        .map_err(|error| format!("the image is damaged or too large ({error})"))?;
+    if image.width() == 0 || image.height() == 0 {
+        Err("the image is empty".into())
+    } else {
+        Ok(image)
+    }
 }
 
-fn finish(image: RgbaImage, name: &str, srgb: bool, filter: Filter, warnings: &mut Vec<Notice>) -> Texture {
-    let format = if srgb { TextureFormat::Rgba8Srgb } else { TextureFormat::Rgba8Unorm };
+fn finish(
+    image: RgbaImage,
+    name: &str,
+    srgb: bool,
+    filter: Filter,
+    warnings: &mut Vec<Notice>,
+) -> Texture {
+    let format = if srgb {
+        TextureFormat::Rgba8Srgb
+    } else {
+        TextureFormat::Rgba8Unorm
+    };
     let (width, height) = image.dimensions();
     let mut rgba = image.into_raw();
     let to = within_limit(width, height);
@@ -216,7 +301,10 @@ fn within_limit(width: u32, height: u32) -> (u32, u32) {
     if longest <= MAX_SIDE {
         return (width, height);
     }
-    (scaled(MAX_SIDE, longest, width).max(1), scaled(MAX_SIDE, longest, height).max(1))
+    (
+        scaled(MAX_SIDE, longest, width).max(1),
+        scaled(MAX_SIDE, longest, height).max(1),
+    )
 }
 
 #[cfg(test)]

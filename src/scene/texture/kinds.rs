@@ -16,7 +16,12 @@ pub type TextureKind = (u32, u32, u32, TextureFormat);
 impl Texture {
     /// Its kind.
     pub fn kind(&self) -> TextureKind {
-        (self.width, self.height, u32::try_from(self.mips.len()).unwrap_or(1), self.format)
+        (
+            self.width,
+            self.height,
+            u32::try_from(self.mips.len()).unwrap_or(1),
+            self.format,
+        )
     }
 }
 
@@ -30,9 +35,14 @@ pub fn keep_their_size(kinds: &[TextureKind]) -> Vec<bool> {
     if texels.len() <= MAX_TEXTURE_KINDS {
         return vec![true; kinds.len()];
     }
-    let mut by_size: Vec<(u64, TextureKind)> = texels.into_iter().map(|(kind, n)| (n, kind)).collect();
+    let mut by_size: Vec<(u64, TextureKind)> =
+        texels.into_iter().map(|(kind, n)| (n, kind)).collect();
     by_size.sort_unstable_by(|a, b| b.cmp(a));
-    let kept: Vec<TextureKind> = by_size.iter().take(MAX_TEXTURE_KINDS - 2).map(|(_, kind)| *kind).collect();
+    let kept: Vec<TextureKind> = by_size
+        .iter()
+        .take(MAX_TEXTURE_KINDS - 2)
+        .map(|(_, kind)| *kind)
+        .collect();
     kinds.iter().map(|kind| kept.contains(kind)).collect()
 }
 
@@ -40,8 +50,13 @@ pub fn keep_their_size(kinds: &[TextureKind]) -> Vec<bool> {
 pub(in crate::scene) fn with_kinds_told(mut scene: Scene) -> Scene {
     let kinds: Vec<TextureKind> = scene.textures.iter().map(Texture::kind).collect();
     let keep = keep_their_size(&kinds);
-    let names: Vec<&str> =
-        scene.textures.iter().zip(&keep).filter(|(_, keep)| !**keep).map(|(t, _)| t.name.as_str()).collect();
+    let names: Vec<&str> = scene
+        .textures
+        .iter()
+        .zip(&keep)
+        .filter(|(_, keep)| !**keep)
+        .map(|(t, _)| t.name.as_str())
+        .collect();
     if let Some(first) = names.first() {
         let count = names.len();
         scene.warnings.push(format!(

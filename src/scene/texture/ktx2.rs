@@ -35,20 +35,34 @@ pub(super) fn pixels(bytes: &[u8]) -> Result<RgbaImage, String> {
         None => universal(bytes, &header, &level)?,
         Some(format) => plain(format, &header, &level)?,
     };
-    RgbaImage::from_raw(width, height, rgba).ok_or_else(|| "its KTX2 data is shorter than its size says".into())
+    RgbaImage::from_raw(width, height, rgba)
+        .ok_or_else(|| "its KTX2 data is shorter than its size says".into())
 }
 
 /// The header and the first level. [`ktx2::Reader`] reads more, and panics at some descriptors of damaged files.
 fn parse(bytes: &[u8]) -> Result<(Header, Level<'_>), String> {
-    let (header, rest) = bytes.split_first_chunk().ok_or("the KTX2 file ends inside its header")?;
-    let header = Header::from_bytes(header).map_err(|error| format!("the KTX2 file is damaged ({error})"))?;
-    let index = rest.first_chunk().map(LevelIndex::from_bytes).ok_or("the KTX2 file ends inside its header")?;
+    let (header, rest) = bytes
+        .split_first_chunk()
+        .ok_or("the KTX2 file ends inside its header")?;
+    let header = Header::from_bytes(header)
+        .map_err(|error| format!("the KTX2 file is damaged ({error})"))?;
+    let index = rest
+        .first_chunk()
+        .map(LevelIndex::from_bytes)
+        .ok_or("the KTX2 file ends inside its header")?;
     let range = |from: u64, length: u64| {
         let end = from.checked_add(length)?;
         bytes.get(usize::try_from(from).ok()?..usize::try_from(end).ok()?)
     };
-    let data = range(index.byte_offset, index.byte_length).ok_or("the KTX2 file ends inside its first level")?;
-    Ok((header, Level { data, uncompressed_byte_length: index.uncompressed_byte_length }))
+    let data = range(index.byte_offset, index.byte_length)
+        .ok_or("the KTX2 file ends inside its first level")?;
+    Ok((
+        header,
+        Level {
+            data,
+            uncompressed_byte_length: index.uncompressed_byte_length,
+        },
+    ))
 }
 
 /// Width and height of a plain 2D texture.
@@ -57,18 +71,30 @@ fn size(header: &Header) -> Result<(u32, u32), String> {
     if height == 0 || header.pixel_depth > 0 || header.layer_count > 1 || header.face_count > 1 {
         return Err("the KTX2 file is no plain 2D texture; store one picture without layers, depth and faces".into());
     }
-    let fits = width.max(height) <= MAX_FILE_SIDE && u64::from(width) * u64::from(height) * 4 <= MAX_FILE_BYTES;
-    if fits { Ok((width, height)) } else { Err(format!("its size {width}x{height} is too large; store it smaller")) }
+    let fits = width.max(height) <= MAX_FILE_SIDE
+        && u64::from(width) * u64::from(height) * 4 <= MAX_FILE_BYTES;
+    if fits {
+        Ok((width, height))
+    } else {
+        Err(format!(
+            "its size {width}x{height} is too large; store it smaller"
+        ))
+    }
 }
 
 fn universal(bytes: &[u8], header: &Header, level: &Level) -> Result<Vec<u8>, String> {
-    let damaged =
-        |error: basisu::Error| format!("the KTX2 texture is damaged or of a kind that is not read ({error:?})");
+    let damaged = |error: basisu::Error| {
+        format!("the KTX2 texture is damaged or of a kind that is not read ({error:?})")
+    };
     if header.supercompression_scheme == Some(SupercompressionScheme::Zstandard) {
         // The transcoder allocates the size that the file states.
-        let blocks = header.pixel_width.div_ceil(SIDE) as usize * header.pixel_height.div_ceil(SIDE) as usize;
+        let blocks = header.pixel_width.div_ceil(SIDE) as usize
+            * header.pixel_height.div_ceil(SIDE) as usize;
         if level.uncompressed_byte_length != (blocks * UASTC_BYTES) as u64 {
-            return Err("the KTX2 texture is damaged: its uncompressed size is not that of its blocks".into());
+            return Err(
+                "the KTX2 texture is damaged: its uncompressed size is not that of its blocks"
+                    .into(),
+            );
         }
     }
     // Keys and values are not needed, and the transcoder panics at damaged ones.
@@ -77,10 +103,15 @@ fn universal(bytes: &[u8], header: &Header, level: &Level) -> Result<Vec<u8>, St
         place.fill(0);
     }
     let transcoder = Transcoder::new(&bytes).map_err(damaged)?;
-    if !matches!(transcoder.source_format(), SourceFormat::Etc1s | SourceFormat::UastcLdr) {
+    if !matches!(
+        transcoder.source_format(),
+        SourceFormat::Etc1s | SourceFormat::UastcLdr
+    ) {
         return Err("its KTX2 format is not read; store it as ETC1S or UASTC".into());
     }
-    transcoder.transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE).map_err(damaged)
+    transcoder
+        .transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE)
+        .map_err(damaged)
 }
 
 fn plain(format: Format, header: &Header, level: &Level) -> Result<Vec<u8>, String> {
@@ -88,14 +119,31 @@ fn plain(format: Format, header: &Header, level: &Level) -> Result<Vec<u8>, Stri
     let texels = width as usize * height as usize;
     if matches!(format, Format::R8G8B8_UNORM | Format::R8G8B8_SRGB) {
         let data = uncompressed(header, level, 3 * texels)?;
-        return Ok(data.as_chunks::<3>().0.iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect());
+        return Ok(data
+            .as_chunks::<3>()
+            .0
+            .iter()
+            .flat_map(|&[r, g, b]| [r, g, b, 255])
+            .collect());
     }
-    let (image, bytes, side) = layout(format)
-        .ok_or_else(|| format!("its KTX2 format {format:?} is not read; store it as UASTC or R8G8B8A8_SRGB"))?;
+    let (image, bytes, side) = layout(format).ok_or_else(|| {
+        format!("its KTX2 format {format:?} is not read; store it as UASTC or R8G8B8A8_SRGB")
+    })?;
     let blocks = width.div_ceil(side) as usize * height.div_ceil(side) as usize;
-    let mut rgba = dds::decode(image, width, height, &uncompressed(header, level, blocks * bytes)?)?;
-    if matches!(format, Format::BC1_RGB_UNORM_BLOCK | Format::BC1_RGB_SRGB_BLOCK) {
-        rgba.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 255);
+    let mut rgba = dds::decode(
+        image,
+        width,
+        height,
+        &uncompressed(header, level, blocks * bytes)?,
+    )?;
+    if matches!(
+        format,
+        Format::BC1_RGB_UNORM_BLOCK | Format::BC1_RGB_SRGB_BLOCK
+    ) {
+        rgba.iter_mut()
+            .skip(3)
+            .step_by(4)
+            .for_each(|alpha| *alpha = 255);
     }
     Ok(rgba)
 }
@@ -126,13 +174,19 @@ fn layout(format: Format) -> Option<(ImageFormat, usize, u32)> {
 fn uncompressed(header: &Header, level: &Level, count: usize) -> Result<Vec<u8>, String> {
     let short = || format!("its KTX2 data is damaged: its size needs {count} bytes");
     match header.supercompression_scheme {
-        None => level.data.get(..count).map(<[u8]>::to_vec).ok_or_else(short),
+        None => level
+            .data
+            .get(..count)
+            .map(<[u8]>::to_vec)
+            .ok_or_else(short),
         Some(SupercompressionScheme::Zstandard) => {
             let mut stream = StreamingDecoder::new(level.data).map_err(|_| short())?;
             let mut bytes = vec![0; count];
             stream.read_exact(&mut bytes).map_err(|_| short())?;
             Ok(bytes)
         }
-        Some(other) => Err(format!("its KTX2 compression {other:?} is not read; store it with Zstandard or without")),
+        Some(other) => Err(format!(
+            "its KTX2 compression {other:?} is not read; store it with Zstandard or without"
+        )),
     }
 }

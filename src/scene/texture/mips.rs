@@ -26,7 +26,11 @@ static SRGB_TO_LINEAR: LazyLock<[f32; 256]> =
 static LINEAR_TO_SRGB: LazyLock<Vec<u8>> = LazyLock::new(|| {
     let encode = |i: usize| {
         let l = i as f32 / 16384.0;
-        let c = if l <= 0.003_130_8 { l * 12.92 } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
+        let c = if l <= 0.003_130_8 {
+            l * 12.92
+        } else {
+            1.055 * l.powf(1.0 / 2.4) - 0.055
+        };
         (c * 255.0 + 0.5) as u8
     };
     (0..=16384).map(encode).collect()
@@ -41,10 +45,18 @@ pub(in crate::scene) fn texture_from_rgba(
     format: TextureFormat,
     filter: Filter,
 ) -> Texture {
-    assert_eq!(rgba.len(), format.level_bytes(width, height), "texels of {name}");
+    assert_eq!(
+        rgba.len(),
+        format.level_bytes(width, height),
+        "texels of {name}"
+    );
     let srgb = format.is_srgb();
     let mut level = decode(&rgba, srgb);
-    let coverage = if let Filter::Masked(cutoff) = filter { alpha_coverage(&level, 1.0, cutoff) } else { 0.0 };
+    let coverage = if let Filter::Masked(cutoff) = filter {
+        alpha_coverage(&level, 1.0, cutoff)
+    } else {
+        0.0
+    };
     let mut mips = vec![rgba];
     let (mut w, mut h) = (width, height);
     while w > 1 || h > 1 {
@@ -52,11 +64,19 @@ pub(in crate::scene) fn texture_from_rgba(
         level = shrink(&level, (w, h), (next_w, next_h), filter);
         (w, h) = (next_w, next_h);
         match filter {
-            Filter::Masked(cutoff) => mips.push(encode(&with_coverage(&level, cutoff, coverage), srgb)),
+            Filter::Masked(cutoff) => {
+                mips.push(encode(&with_coverage(&level, cutoff, coverage), srgb))
+            }
             _ => mips.push(encode(&level, srgb)),
         }
     }
-    Texture { name: name.into(), width, height, format, mips }
+    Texture {
+        name: name.into(),
+        width,
+        height,
+        format,
+        mips,
+    }
 }
 
 /// The mean of a texture, linear: of its last level.
@@ -75,7 +95,13 @@ pub(super) fn mean_color(texture: &Texture) -> Result<Vec4, String> {
 }
 
 /// RGBA8 texels resampled to a smaller size by the same filter as the mips.
-pub(super) fn reduce(rgba: &[u8], from: (u32, u32), to: (u32, u32), srgb: bool, filter: Filter) -> Vec<u8> {
+pub(super) fn reduce(
+    rgba: &[u8],
+    from: (u32, u32),
+    to: (u32, u32),
+    srgb: bool,
+    filter: Filter,
+) -> Vec<u8> {
     encode(&shrink(&decode(rgba, srgb), from, to, filter), srgb)
 }
 
@@ -83,7 +109,11 @@ pub(super) fn reduce(rgba: &[u8], from: (u32, u32), to: (u32, u32), srgb: bool, 
 pub(super) fn decode(rgba: &[u8], srgb: bool) -> Vec<Vec4> {
     let plain = |c: u8| f32::from(c) / 255.0;
     let color = |c: u8| {
-        if srgb { SRGB_TO_LINEAR[c as usize] } else { plain(c) }
+        if srgb {
+            SRGB_TO_LINEAR[c as usize]
+        } else {
+            plain(c)
+        }
     };
     let texels = rgba.as_chunks::<4>().0;
     texels
@@ -99,7 +129,10 @@ fn encode(texels: &[Vec4], srgb: bool) -> Vec<u8> {
         true => LINEAR_TO_SRGB[(c.clamp(0.0, 1.0) * 16384.0 + 0.5) as usize],
         false => plain(c),
     };
-    texels.iter().flat_map(|t| [color(t.x), color(t.y), color(t.z), plain(t.w)]).collect()
+    texels
+        .iter()
+        .flat_map(|t| [color(t.x), color(t.y), color(t.z), plain(t.w)])
+        .collect()
 }
 
 /// Each target texel is the mean over the source area that it covers, so that odd sizes lose no row.
@@ -107,7 +140,10 @@ fn shrink(texels: &[Vec4], from: (u32, u32), to: (u32, u32), filter: Filter) -> 
     let columns: Vec<Vec<(usize, f32)>> = (0..to.0).map(|x| taps(x, from.0, to.0)).collect();
     let row = |y: u32| -> Vec<Vec4> {
         let rows = taps(y, from.1, to.1);
-        columns.iter().map(|columns| mean(texels, from.0 as usize, columns, &rows, filter)).collect()
+        columns
+            .iter()
+            .map(|columns| mean(texels, from.0 as usize, columns, &rows, filter))
+            .collect()
     };
     (0..to.1).into_par_iter().flat_map_iter(row).collect()
 }
@@ -119,10 +155,19 @@ fn taps(target: u32, from: u32, to: u32) -> Vec<(usize, f32)> {
     let first = start.floor() as usize;
     let last = (end.ceil() as usize).min(from as usize);
     let covered = |i: usize| (end.min(i as f64 + 1.0) - start.max(i as f64)).max(0.0) / scale;
-    (first..last).map(|i| (i, covered(i) as f32)).filter(|tap| tap.1 > 1e-6).collect()
+    (first..last)
+        .map(|i| (i, covered(i) as f32))
+        .filter(|tap| tap.1 > 1e-6)
+        .collect()
 }
 
-fn mean(texels: &[Vec4], width: usize, columns: &[(usize, f32)], rows: &[(usize, f32)], filter: Filter) -> Vec4 {
+fn mean(
+    texels: &[Vec4],
+    width: usize,
+    columns: &[(usize, f32)],
+    rows: &[(usize, f32)],
+    filter: Filter,
+) -> Vec4 {
     let mut sum = Vec4::ZERO;
     let mut weighted = Vec3::ZERO;
     let mut weight = 0.0;
@@ -157,10 +202,17 @@ fn with_coverage(texels: &[Vec4], cutoff: f32, coverage: f32) -> Vec<Vec4> {
     let (mut low, mut high) = (0.0f32, 8.0f32);
     for _ in 0..16 {
         let middle = 0.5 * (low + high);
-        if alpha_coverage(texels, middle, cutoff) < coverage { low = middle } else { high = middle }
+        if alpha_coverage(texels, middle, cutoff) < coverage {
+            low = middle
+        } else {
+            high = middle
+        }
     }
     // Few texels have few shares to choose from: take the nearer one.
     let miss = |scale: f32| (alpha_coverage(texels, scale, cutoff) - coverage).abs();
     let scale = if miss(low) < miss(high) { low } else { high };
-    texels.iter().map(|t| t.truncate().extend((t.w * scale).min(1.0))).collect()
+    texels
+        .iter()
+        .map(|t| t.truncate().extend((t.w * scale).min(1.0)))
+        .collect()
 }

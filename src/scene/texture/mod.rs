@@ -53,7 +53,11 @@ pub(super) enum Recipe {
     /// sRGB colour; `mask` is an alpha cutoff in 1/255ths whose coverage the mips preserve.
     Color { image: Source, mask: Option<u8> },
     /// sRGB colour from one image (white without) and alpha from another.
-    ColorAndMask { color: Option<Source>, alpha: Source, mask: u8 },
+    ColorAndMask {
+        color: Option<Source>,
+        alpha: Source,
+        mask: u8,
+    },
     /// Tangent-space normals.
     Normal { image: Source },
     /// G = roughness, B = metallic in one image.
@@ -61,7 +65,10 @@ pub(super) enum Recipe {
     /// Glossiness in alpha, times a factor in 1/255ths; nothing of it is metal.
     Glossiness { image: Source, factor: u8 },
     /// Roughness and metallic in grey images of their own (white without).
-    RoughnessAndMetallic { roughness: Option<Source>, metallic: Option<Source> },
+    RoughnessAndMetallic {
+        roughness: Option<Source>,
+        metallic: Option<Source>,
+    },
 }
 
 impl Recipe {
@@ -73,12 +80,18 @@ impl Recipe {
             | Recipe::MetallicRoughness { image }
             | Recipe::Glossiness { image, .. } => [Some(image), None],
             Recipe::ColorAndMask { color, alpha, .. } => [color.as_ref(), Some(alpha)],
-            Recipe::RoughnessAndMetallic { roughness, metallic } => [roughness.as_ref(), metallic.as_ref()],
+            Recipe::RoughnessAndMetallic {
+                roughness,
+                metallic,
+            } => [roughness.as_ref(), metallic.as_ref()],
         };
-        sources.into_iter().flatten().filter_map(|source| match source {
-            Source::File(path) => Some(path.as_path()),
-            _ => None,
-        })
+        sources
+            .into_iter()
+            .flatten()
+            .filter_map(|source| match source {
+                Source::File(path) => Some(path.as_path()),
+                _ => None,
+            })
     }
 
     /// Of its first image.
@@ -89,9 +102,14 @@ impl Recipe {
             | Recipe::MetallicRoughness { image }
             | Recipe::Glossiness { image, .. } => image.name(),
             Recipe::ColorAndMask { color, alpha, .. } => color.as_ref().unwrap_or(alpha).name(),
-            Recipe::RoughnessAndMetallic { roughness, metallic } => {
-                roughness.as_ref().or(metallic.as_ref()).map(Source::name).unwrap_or_default()
-            }
+            Recipe::RoughnessAndMetallic {
+                roughness,
+                metallic,
+            } => roughness
+                .as_ref()
+                .or(metallic.as_ref())
+                .map(Source::name)
+                .unwrap_or_default(),
         }
     }
 }
@@ -105,11 +123,17 @@ pub(super) struct Notice {
 impl Notice {
     fn of_size(name: &str, from: (u32, u32), to: (u32, u32)) -> Notice {
         let name = format!("{name}: {}x{} to {}x{}", from.0, from.1, to.0, to.1);
-        Notice { what: "they are too large and were reduced".into(), name }
+        Notice {
+            what: "they are too large and were reduced".into(),
+            name,
+        }
     }
 
     fn of_file(file: &str, material: &str, problem: &str, instead: &str) -> Notice {
-        Notice { what: format!("{problem}; {instead}"), name: format!("{file} of material {material}") }
+        Notice {
+            what: format!("{problem}; {instead}"),
+            name: format!("{file} of material {material}"),
+        }
     }
 }
 
@@ -138,8 +162,9 @@ impl Requests {
     pub fn means(self, progress: Progress) -> Result<(Vec<Vec4>, Vec<String>), SceneError> {
         self.each(progress, |recipe, material| {
             let mut warnings = Vec::new();
-            let mean = decoded(recipe, &mut warnings)
-                .and_then(|texture| mips::mean_color(&texture).map_err(|problem| (texture.name.clone(), problem)));
+            let mean = decoded(recipe, &mut warnings).and_then(|texture| {
+                mips::mean_color(&texture).map_err(|problem| (texture.name.clone(), problem))
+            });
             let mean = mean.unwrap_or_else(|(file, problem)| {
                 warnings.push(Notice::of_file(&file, material, &problem, "it is left out"));
                 Vec4::ONE
@@ -159,12 +184,19 @@ impl Requests {
             progress.reads(file);
         }
         let one = |(recipe, material): &(Recipe, String)| {
-            if progress.stopped() { Err(SceneError::Cancelled) } else { Ok(make(recipe, material)) }
+            if progress.stopped() {
+                Err(SceneError::Cancelled)
+            } else {
+                Ok(make(recipe, material))
+            }
         };
         let made: Vec<(T, Vec<Notice>)> = recipes.par_iter().map(one).collect::<Result<_, _>>()?;
         let (list, notices): (Vec<T>, Vec<Vec<Notice>>) = made.into_iter().unzip();
         let mut warnings = Warnings::default();
-        notices.into_iter().flatten().for_each(|notice| warnings.add(notice.what, notice.name));
+        notices
+            .into_iter()
+            .flatten()
+            .for_each(|notice| warnings.add(notice.what, notice.name));
         Ok((list, warnings.lines("textures")))
     }
 }
@@ -182,7 +214,12 @@ fn cook(recipe: &Recipe, material: &str) -> (Texture, Vec<Notice>) {
     match decoded(recipe, &mut warnings) {
         Ok(texture) => (texture, warnings),
         Err((file, problem)) => {
-            warnings.push(Notice::of_file(&file, material, &problem, "a checkerboard stands in for it"));
+            warnings.push(Notice::of_file(
+                &file,
+                material,
+                &problem,
+                "a checkerboard stands in for it",
+            ));
             (stand_in::checkerboard(recipe, &file), warnings)
         }
     }

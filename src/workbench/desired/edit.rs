@@ -6,18 +6,28 @@ use crate::graph::param::{OFF, Param, Params, Value};
 /// The parameters that differ from their defaults.
 pub fn changed(params: &Params) -> Vec<(String, String)> {
     let pairs = params.list.iter().zip(&params.values);
-    pairs.filter(|(p, v)| p.default != **v).map(|(p, v)| (p.name.clone(), v.to_ron())).collect()
+    pairs
+        .filter(|(p, v)| p.default != **v)
+        .map(|(p, v)| (p.name.clone(), v.to_ron()))
+        .collect()
 }
 
 /// A parameter's value in a side: what is set, else the default.
 pub fn value(side: &SideRequest, param: &Param) -> Value {
-    let set = side.params.iter().rev().find(|(name, _)| *name == param.name);
-    set.and_then(|(_, text)| param.parse(text).ok()).unwrap_or_else(|| param.default.clone())
+    let set = side
+        .params
+        .iter()
+        .rev()
+        .find(|(name, _)| *name == param.name);
+    set.and_then(|(_, text)| param.parse(text).ok())
+        .unwrap_or_else(|| param.default.clone())
 }
 
 /// The passes that a side leaves out.
 pub fn off(side: &SideRequest, params: &Params) -> Vec<String> {
-    let Some((_, text)) = side.params.iter().rev().find(|(name, _)| name == OFF) else { return Vec::new() };
+    let Some((_, text)) = side.params.iter().rev().find(|(name, _)| name == OFF) else {
+        return Vec::new();
+    };
     let mut params = params.clone();
     params.off.clear();
     // A pass that the graph no longer has is said by the build.

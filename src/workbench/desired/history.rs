@@ -33,8 +33,10 @@ impl State {
     /// opened.
     fn same(&self, other: &State, opened: bool) -> bool {
         let (a, b) = (&self.desired, &other.desired);
-        let edit = a.sides == b.sides && (&a.scene, &a.environment, &a.lights) == (&b.scene, &b.environment, &b.lights);
-        let view = a.camera == b.camera && self.fixed_size == other.fixed_size && self.name == other.name;
+        let edit = a.sides == b.sides
+            && (&a.scene, &a.environment, &a.lights) == (&b.scene, &b.environment, &b.lights);
+        let view =
+            a.camera == b.camera && self.fixed_size == other.fixed_size && self.name == other.name;
         edit && (view || !opened)
     }
 }
@@ -74,7 +76,11 @@ impl History {
 
     /// The state to go to from this one.
     fn step(&mut self, now: State, back: bool) -> Option<Step> {
-        let (from, to) = if back { (&mut self.past, &mut self.future) } else { (&mut self.future, &mut self.past) };
+        let (from, to) = if back {
+            (&mut self.past, &mut self.future)
+        } else {
+            (&mut self.future, &mut self.past)
+        };
         let (state, opened) = from.pop()?;
         to.push((now, opened));
         Some((state, opened))
@@ -85,14 +91,27 @@ impl History {
     /// Forgets a scene that could not be loaded: its states take the scene of `before`, to which the session returns.
     fn forget_scene(&mut self, failed: (&str, &str), before: &State) {
         let settled = self.settled.iter_mut();
-        let states = self.past.iter_mut().chain(&mut self.future).map(|s| &mut s.0).chain(settled);
+        let states = self
+            .past
+            .iter_mut()
+            .chain(&mut self.future)
+            .map(|s| &mut s.0)
+            .chain(settled);
         for state in states {
-            if (state.desired.scene.as_str(), state.desired.environment.as_str()) == failed {
+            if (
+                state.desired.scene.as_str(),
+                state.desired.environment.as_str(),
+            ) == failed
+            {
                 state.take_scene(before);
             }
         }
         self.settled = Some(before.clone());
-        while self.past.last().is_some_and(|(last, opened)| last.same(before, *opened)) {
+        while self
+            .past
+            .last()
+            .is_some_and(|(last, opened)| last.same(before, *opened))
+        {
             self.past.pop();
         }
         self.opened = false;
@@ -102,7 +121,9 @@ impl History {
 impl State {
     fn take_scene(&mut self, other: &State) {
         self.desired.scene.clone_from(&other.desired.scene);
-        self.desired.environment.clone_from(&other.desired.environment);
+        self.desired
+            .environment
+            .clone_from(&other.desired.environment);
         self.desired.lights.clone_from(&other.desired.lights);
         self.desired.camera = other.desired.camera;
     }
@@ -112,13 +133,23 @@ impl Workbench {
     /// Returns to the scene that is shown, and to all that was asked for before another one was, because that one could
     /// not be loaded.
     pub(crate) fn return_to_scene(&mut self) {
-        let Some(before) = self.before_loading.take() else { return };
+        let Some(before) = self.before_loading.take() else {
+            return;
+        };
         let failed = (self.desired.scene.clone(), self.desired.environment.clone());
         let (revision, scene_revision) = (self.desired.revision, self.desired.scene_revision);
-        let (clock, continuous, redo) = (self.desired.clock, self.desired.continuous, self.desired.redo);
+        let (clock, continuous, redo) = (
+            self.desired.clock,
+            self.desired.continuous,
+            self.desired.redo,
+        );
         self.desired = before.desired.clone();
         (self.desired.revision, self.desired.scene_revision) = (revision, scene_revision);
-        (self.desired.clock, self.desired.continuous, self.desired.redo) = (clock, continuous, redo);
+        (
+            self.desired.clock,
+            self.desired.continuous,
+            self.desired.redo,
+        ) = (clock, continuous, redo);
         self.name.clone_from(&before.name);
         self.fixed_size = before.fixed_size;
         (self.experiment, self.returning) = (None, false);
@@ -127,8 +158,16 @@ impl Workbench {
     }
 
     pub(crate) fn state(&self) -> State {
-        let time = self.sides[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
-        State { desired: self.desired.clone(), name: self.name.clone(), fixed_size: self.fixed_size, time }
+        let time = self.sides[0]
+            .picture
+            .as_ref()
+            .map_or(self.desired.clock.at, |p| p.time);
+        State {
+            desired: self.desired.clone(),
+            name: self.name.clone(),
+            fixed_size: self.fixed_size,
+            time,
+        }
     }
 
     /// Remembers what there is now; see [`History::note`].
@@ -140,8 +179,21 @@ impl Workbench {
     /// Goes back, or forth, by one edit.
     pub(crate) fn go(&mut self, back: bool) {
         let now = self.state();
-        let Some((State { desired, name, fixed_size, time }, opened)) = self.history.step(now, back) else { return };
-        if (&self.desired.scene, &self.desired.environment) != (&desired.scene, &desired.environment) {
+        let Some((
+            State {
+                desired,
+                name,
+                fixed_size,
+                time,
+            },
+            opened,
+        )) = self.history.step(now, back)
+        else {
+            return;
+        };
+        if (&self.desired.scene, &self.desired.environment)
+            != (&desired.scene, &desired.environment)
+        {
             self.open_scene(&desired.scene);
             self.view.picture.clone_from(&desired.environment);
             self.desired.environment = desired.environment;

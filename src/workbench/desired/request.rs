@@ -65,7 +65,11 @@ impl LightState {
     /// As the scene has it.
     pub fn of(scene: &Scene) -> LightState {
         let rotation = scene.environment.as_ref().map_or(0.0, |e| e.rotation);
-        LightState { lights: scene.lights.clone(), sky: scene.sky, rotation }
+        LightState {
+            lights: scene.lights.clone(),
+            sky: scene.sky,
+            rotation,
+        }
     }
 
     /// Lights a session from its next frame on; false where it would take a new one.
@@ -119,12 +123,23 @@ impl RenderRequest {
     /// The experiment of a side, as a session is made from it.
     pub fn experiment(&self, side: &SideRequest) -> Experiment {
         let mut sources = Sources::default();
-        let text = side.params.iter().map(|(n, v)| format!("{n}: {v}")).collect::<Vec<_>>().join("\n");
+        let text = side
+            .params
+            .iter()
+            .map(|(n, v)| format!("{n}: {v}"))
+            .collect::<Vec<_>>()
+            .join("\n");
         let file = sources.add("the panel".as_ref(), text);
         let mut offset = 0;
         let mut params = Vec::new();
         for (name, value) in &side.params {
-            params.push((Loc { value: name.clone(), at: At { file, offset } }, value.clone()));
+            params.push((
+                Loc {
+                    value: name.clone(),
+                    at: At { file, offset },
+                },
+                value.clone(),
+            ));
             offset += u32::try_from(name.len() + value.len() + 3).unwrap_or(0);
         }
         Experiment {
@@ -133,7 +148,9 @@ impl RenderRequest {
             scene: self.scene.clone(),
             camera: self
                 .camera
-                .map_or(CameraChoice::Named("default".into()), |c| CameraChoice::Placed(PlacedCamera::from(&c))),
+                .map_or(CameraChoice::Named("default".into()), |c| {
+                    CameraChoice::Placed(PlacedCamera::from(&c))
+                }),
             size: self.size,
             time: self.clock.at,
             sky: None,

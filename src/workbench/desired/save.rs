@@ -18,33 +18,68 @@ pub fn experiment(
     time: f64,
     scene: Option<&Scene>,
 ) -> Experiment {
-    let mut experiment = Experiment { name: name.into(), time, ..desired.experiment(side) };
+    let mut experiment = Experiment {
+        name: name.into(),
+        time,
+        ..desired.experiment(side)
+    };
     let at = At::default();
     let file = Some(desired.environment.clone()).filter(|file| !file.is_empty());
-    let mut picture = EnvironmentChange { file, ..EnvironmentChange::default() };
-    if let (Some(LightState { lights, sky, rotation }), Some(scene)) = (&desired.lights, scene) {
+    let mut picture = EnvironmentChange {
+        file,
+        ..EnvironmentChange::default()
+    };
+    if let (
+        Some(LightState {
+            lights,
+            sky,
+            rotation,
+        }),
+        Some(scene),
+    ) = (&desired.lights, scene)
+    {
         experiment.sky = (*sky != scene.sky).then(|| (*sky).into());
-        picture.rotation = scene.environment.as_ref().filter(|e| e.rotation != *rotation).map(|_| *rotation);
+        picture.rotation = scene
+            .environment
+            .as_ref()
+            .filter(|e| e.rotation != *rotation)
+            .map(|_| *rotation);
         experiment.lights = lights
             .iter()
             .zip(&scene.lights)
             .filter(|(light, own)| light != own)
-            .map(|(light, own)| (Loc { value: own.name.clone(), at: At::default() }, change(light, own)))
+            .map(|(light, own)| {
+                (
+                    Loc {
+                        value: own.name.clone(),
+                        at: At::default(),
+                    },
+                    change(light, own),
+                )
+            })
             .collect();
     }
-    experiment.environment = (picture != EnvironmentChange::default()).then_some(Loc { value: picture, at });
+    experiment.environment =
+        (picture != EnvironmentChange::default()).then_some(Loc { value: picture, at });
     experiment
 }
 
 /// A side without where the pointer is: that is a state of the window.
 pub fn without_pointer(side: &SideRequest, pointer: Option<&str>) -> SideRequest {
     let mut side = side.clone();
-    side.params.retain(|(name, _)| Some(name.as_str()) != pointer);
+    side.params
+        .retain(|(name, _)| Some(name.as_str()) != pointer);
     side
 }
 
 /// Like [`experiment`], seen from where the camera's path is at that time.
-pub fn still(desired: &RenderRequest, side: &SideRequest, name: &str, time: f64, scene: &Scene) -> Experiment {
+pub fn still(
+    desired: &RenderRequest,
+    side: &SideRequest,
+    name: &str,
+    time: f64,
+    scene: &Scene,
+) -> Experiment {
     let mut still = experiment(desired, side, name, time, Some(scene));
     if let Some(path) = &desired.path {
         still.camera = CameraChoice::Placed(path.at(time));
@@ -54,7 +89,9 @@ pub fn still(desired: &RenderRequest, side: &SideRequest, name: &str, time: f64,
 
 fn change(light: &Light, own: &Light) -> LightChange {
     let angles = |kind: LightKind| match kind {
-        LightKind::Spot { inner, outer } => Some((f64::from(inner).to_degrees(), f64::from(outer).to_degrees())),
+        LightKind::Spot { inner, outer } => {
+            Some((f64::from(inner).to_degrees(), f64::from(outer).to_degrees()))
+        }
         _ => None,
     };
     let differing = angles(light.kind).filter(|_| light.kind != own.kind);
@@ -72,7 +109,8 @@ fn change(light: &Light, own: &Light) -> LightChange {
 /// # Errors
 /// The experiment changes a light that the scene does not have.
 pub fn lights(experiment: &Experiment, scene: &Arc<Scene>) -> Result<Option<LightState>, LabError> {
-    if experiment.sky.is_none() && experiment.environment.is_none() && experiment.lights.is_empty() {
+    if experiment.sky.is_none() && experiment.environment.is_none() && experiment.lights.is_empty()
+    {
         return Ok(None);
     }
     let adapted = experiment.adapted(scene.clone())?;
@@ -91,7 +129,19 @@ pub fn take(
     resources: Vec<String>,
     timers: Rows,
 ) -> Result<PathBuf, LabError> {
-    let resources = resources.into_iter().map(|name| Resource { name, mip: 0, layer: 0 }).collect();
-    let what = What { resources, timers, numbered: true, ..What::default() };
+    let resources = resources
+        .into_iter()
+        .map(|name| Resource {
+            name,
+            mip: 0,
+            layer: 0,
+        })
+        .collect();
+    let what = What {
+        resources,
+        timers,
+        numbered: true,
+        ..What::default()
+    };
     capture::take(lab, experiment, scene, &what, folder, &experiment.name)
 }

@@ -14,9 +14,13 @@ const NAMED: usize = 2;
 impl Workbench {
     /// A side with another graph: it keeps the settings that the graph has too.
     pub(crate) fn with_graph(&self, side: &SideRequest, graph: &str) -> SideRequest {
-        let mut side = SideRequest { graph: graph.into(), ..side.clone() };
+        let mut side = SideRequest {
+            graph: graph.into(),
+            ..side.clone()
+        };
         if let Ok(graph) = self.home.read(graph) {
-            side.params.retain(|(name, value)| graph.params.clone().set(name, value).is_ok());
+            side.params
+                .retain(|(name, value)| graph.params.clone().set(name, value).is_ok());
         }
         side
     }
@@ -25,7 +29,10 @@ impl Workbench {
     pub(crate) fn compare_sides(&mut self, sides: [Option<SideRequest>; 2]) {
         let now = self.desired.sides[0].clone();
         // A comparison that follows another ends with what was before the first.
-        let first = self.alone.take().filter(|(_, made)| self.desired.sides[1].is_some() && now.as_ref() == Some(made));
+        let first = self
+            .alone
+            .take()
+            .filter(|(_, made)| self.desired.sides[1].is_some() && now.as_ref() == Some(made));
         let before = first.map(|(before, _)| before).or(now);
         self.alone = before.zip(sides[0].clone());
         self.desired.sides = sides;
@@ -44,23 +51,43 @@ impl Workbench {
 
     /// What A and B differ in, a few words each; nothing where they are the same, or there is no B.
     pub(crate) fn sides_in_words(&self) -> [String; 2] {
-        let [Some(a), Some(b)] = &self.desired.sides else { return Default::default() };
+        let [Some(a), Some(b)] = &self.desired.sides else {
+            return Default::default();
+        };
         if a.graph != b.graph {
             return [a, b].map(|side| short(&side.graph));
         }
-        let Some(info) = &self.sides[0].info else { return Default::default() };
+        let Some(info) = &self.sides[0].info else {
+            return Default::default();
+        };
         let mut words = [Vec::new(), Vec::new()];
         let off = [a, b].map(|side| edit::off(side, &info.params));
-        for (words, (own, other)) in words.iter_mut().zip([(&off[0], &off[1]), (&off[1], &off[0])]) {
-            let without: Vec<&str> = own.iter().filter(|o| !other.contains(o)).map(String::as_str).collect();
-            let with: Vec<&str> = other.iter().filter(|o| !own.contains(o)).map(String::as_str).collect();
+        for (words, (own, other)) in words
+            .iter_mut()
+            .zip([(&off[0], &off[1]), (&off[1], &off[0])])
+        {
+            let without: Vec<&str> = own
+                .iter()
+                .filter(|o| !other.contains(o))
+                .map(String::as_str)
+                .collect();
+            let with: Vec<&str> = other
+                .iter()
+                .filter(|o| !own.contains(o))
+                .map(String::as_str)
+                .collect();
             words.extend((!without.is_empty()).then(|| format!("without {}", without.join(", "))));
             words.extend((!with.is_empty()).then(|| format!("with {}", with.join(", "))));
         }
         let mut seen: Vec<&str> = vec![OFF];
         let mut more = false;
         for (name, _) in a.params.iter().chain(&b.params) {
-            let Some(param) = info.graph.params.param(name).filter(|_| !seen.contains(&name.as_str())) else {
+            let Some(param) = info
+                .graph
+                .params
+                .param(name)
+                .filter(|_| !seen.contains(&name.as_str()))
+            else {
                 continue;
             };
             seen.push(name);
@@ -69,7 +96,11 @@ impl Workbench {
                 continue;
             }
             more |= words[0].len() >= NAMED;
-            for (words, value) in words.iter_mut().zip(&values).filter(|(words, _)| words.len() < NAMED) {
+            for (words, value) in words
+                .iter_mut()
+                .zip(&values)
+                .filter(|(words, _)| words.len() < NAMED)
+            {
                 words.push(format!("{name} {value}"));
             }
         }

@@ -10,12 +10,22 @@ use crate::workbench::desired::save;
 impl Run<'_> {
     /// Sends what a side shows to the error worker. A picture that is not there yet is asked for again.
     pub(super) fn measure_error(&mut self, number: usize, query: ErrorQuery) {
-        let (Some(desired), Some(scene)) = (&self.desired.sides[number], &self.scene) else { return };
+        let (Some(desired), Some(scene)) = (&self.desired.sides[number], &self.scene) else {
+            return;
+        };
         let side = &self.sides[number];
-        let shown = side.session.as_ref().filter(|_| side.key.as_ref() == Some(&self.key(desired, number)));
+        let shown = side
+            .session
+            .as_ref()
+            .filter(|_| side.key.as_ref() == Some(&self.key(desired, number)));
         let (Some(session), Some(loaded)) = (shown, &side.loaded) else {
             let result = Err("what is asked for is not shown".into());
-            self.out.send(Report::Error(ErrorResult { side: number, request: self.number, query, result }));
+            self.out.send(Report::Error(ErrorResult {
+                side: number,
+                request: self.number,
+                query,
+                result,
+            }));
             return;
         };
         let request = ErrorRequest {
@@ -35,15 +45,31 @@ impl Run<'_> {
     }
 
     /// Captures on a thread of its own, from a fresh start, so that a replay can give the same bits.
-    pub(super) fn capture(&mut self, number: usize, name: String, resources: Vec<String>, timers: Rows) {
-        let (Some(desired), Some(scene)) = (self.desired.sides[number].clone(), self.scene.clone()) else { return };
-        let pointer = self.sides[number].loaded.as_ref().and_then(|l| l.graph.pointer.as_deref());
+    pub(super) fn capture(
+        &mut self,
+        number: usize,
+        name: String,
+        resources: Vec<String>,
+        timers: Rows,
+    ) {
+        let (Some(desired), Some(scene)) = (self.desired.sides[number].clone(), self.scene.clone())
+        else {
+            return;
+        };
+        let pointer = self.sides[number]
+            .loaded
+            .as_ref()
+            .and_then(|l| l.graph.pointer.as_deref());
         let desired = save::without_pointer(&desired, pointer);
-        let experiment = save::experiment(&self.desired, &desired, &name, self.clock.now, Some(&scene));
+        let experiment =
+            save::experiment(&self.desired, &desired, &name, self.clock.now, Some(&scene));
         let (lab, out) = (self.lab.clone(), self.out.clone());
         let folder = lab.home.root.join("captures");
         std::thread::spawn(move || {
-            let take = || save::take(&lab, &experiment, scene, &folder, resources, timers).map_err(|e| e.to_string());
+            let take = || {
+                save::take(&lab, &experiment, scene, &folder, resources, timers)
+                    .map_err(|e| e.to_string())
+            };
             out.send(Report::Captured(guarded(take).flatten()));
         });
     }

@@ -66,7 +66,16 @@ pub fn run(jobs: &Receiver<Job>, done: &Sender<Done>) {
         let start = Instant::now();
         let (side, key, preview) = (job.side, job.key.clone(), job.preview);
         let result = guarded(|| build(job)).unwrap_or_else(|why| Err(LabError::Request(why)));
-        if done.send(Done { side, key, preview, start, result }).is_err() {
+        if done
+            .send(Done {
+                side,
+                key,
+                preview,
+                start,
+                result,
+            })
+            .is_err()
+        {
             return;
         }
     }
@@ -82,12 +91,21 @@ fn build(job: Job) -> Result<(Box<Session>, Loaded), LabError> {
     let loaded = loaded.map_err(LabError::Input)?;
     let graph = &loaded.graph;
     let output = graph.output.clone().ok_or_else(|| {
-        LabError::Request(format!("graph '{}' has no `output`: there is nothing to show", graph.name))
+        LabError::Request(format!(
+            "graph '{}' has no `output`: there is nothing to show",
+            graph.name
+        ))
     })?;
     let has = |name: &String| graph.resource(name).is_some();
     let mut wanted = vec![output.clone()];
     wanted.extend(job.key.wanted.iter().filter(|n| has(n)).cloned());
-    let mut session = job.lab.build(&job.experiment, &loaded, job.scene, wanted, job.reuse.as_ref())?;
+    let mut session = job.lab.build(
+        &job.experiment,
+        &loaded,
+        job.scene,
+        wanted,
+        job.reuse.as_ref(),
+    )?;
     session.show(&output);
     Ok((Box::new(session), loaded))
 }

@@ -22,7 +22,14 @@ impl Need {
         if old == new {
             return None;
         }
-        let lit = |r: &RenderRequest| (r.lights.clone(), r.clock, r.environment.clone(), r.scene.clone());
+        let lit = |r: &RenderRequest| {
+            (
+                r.lights.clone(),
+                r.clock,
+                r.environment.clone(),
+                r.scene.clone(),
+            )
+        };
         Some(match () {
             () if lit(old) != lit(new) => Need::Light,
             () if (&old.camera, &old.path) != (&new.camera, &new.path) => Need::View,
@@ -41,7 +48,8 @@ impl Run<'_> {
     pub(super) fn request_frames_of(&mut self, number: usize, need: Need) {
         let side = &mut self.sides[number];
         let session = side.session.as_ref();
-        let (fresh, changed) = session.map_or((1, 1), |s| (s.converging_frames(), s.frames_after_change()));
+        let (fresh, changed) =
+            session.map_or((1, 1), |s| (s.converging_frames(), s.frames_after_change()));
         let count = |frames: usize| u32::try_from(frames).unwrap_or(u32::MAX);
         let frames = match need {
             Need::Frames(least) if !side.fresh => least,
@@ -52,7 +60,11 @@ impl Run<'_> {
         if frames >= side.frames_left {
             (side.frames_left, side.frames_asked) = (frames, frames);
         }
-        side.least_left = side.least_left.max(if let Need::Frames(least) = need { least } else { 1 });
+        side.least_left = side.least_left.max(if let Need::Frames(least) = need {
+            least
+        } else {
+            1
+        });
     }
 
     /// Counts a frame that a side has begun. Frames after which the picture cannot change any more are left out.
@@ -61,7 +73,11 @@ impl Run<'_> {
         side.fresh = false;
         side.least_left = side.least_left.saturating_sub(1);
         side.frames_left = side.frames_left.saturating_sub(1);
-        if side.session.as_ref().is_some_and(|s| s.program.is_at_rest()) {
+        if side
+            .session
+            .as_ref()
+            .is_some_and(|s| s.program.is_at_rest())
+        {
             side.frames_left = side.frames_left.min(side.least_left);
         }
     }
@@ -72,14 +88,17 @@ impl Run<'_> {
         let shows = |number: usize| {
             let side = &self.sides[number];
             let desired = self.desired.sides[number].as_ref();
-            side.session.is_some() && desired.is_some_and(|d| side.key.as_ref() == Some(&self.key(d, number)))
+            side.session.is_some()
+                && desired.is_some_and(|d| side.key.as_ref() == Some(&self.key(d, number)))
         };
         if !(self.restarts && shows(0) && shows(1)) {
             return Ok(());
         }
         self.restarts = false;
         for number in 0..2 {
-            let Some(session) = &mut self.sides[number].session else { continue };
+            let Some(session) = &mut self.sides[number].session else {
+                continue;
+            };
             let finished = session.restart()?;
             self.report_frames(number, finished);
             let side = &mut self.sides[number];

@@ -109,7 +109,12 @@ pub(crate) fn run(requests: &Receiver<ErrorRequest>, send: &dyn Fn(Report)) {
         for latest in newest.into_iter().flatten() {
             let (side, request, query) = (latest.side, latest.request, latest.query.clone());
             let result = guarded(|| loaded.evaluate(latest).map_err(|e| e.to_string())).flatten();
-            send(Report::Error(ErrorResult { side, request, query, result }));
+            send(Report::Error(ErrorResult {
+                side,
+                request,
+                query,
+                result,
+            }));
         }
     }
 }
@@ -118,23 +123,40 @@ impl Cache {
     fn evaluate(&mut self, request: ErrorRequest) -> Result<PictureError, LabError> {
         let subject = self.subject(&request)?;
         let Some(reference) = self.reference(&request, &subject)? else {
-            return Ok(PictureError { subject, error: None });
+            return Ok(PictureError {
+                subject,
+                error: None,
+            });
         };
         let ErrorQuery { part, metric, .. } = request.query.clone();
-        let wrong = |why: String| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
-        let expected = reference.parts.get(&part).ok_or_else(|| wrong("the reference does not have it".into()))?;
+        let wrong =
+            |why: String| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
+        let expected = reference
+            .parts
+            .get(&part)
+            .ok_or_else(|| wrong("the reference does not have it".into()))?;
         let light = light_of(request, &part)?;
         let compared = Compared::new(&light, &expected.mean).map_err(|e| wrong(e.0))?;
         let error = metric.distance(compared.score(metric).map_err(|e| wrong(e.0))?);
-        let error = ReferenceError { error, noise: expected.noise, samples: reference.samples };
-        Ok(PictureError { subject, error: Some(error) })
+        let error = ReferenceError {
+            error,
+            noise: expected.noise,
+            samples: reference.samples,
+        };
+        Ok(PictureError {
+            subject,
+            error: Some(error),
+        })
     }
 
     /// Scene, camera, size and time of the picture, as sweeps write them down. The hash of a large scene takes a
     /// second: it is kept.
     fn subject(&mut self, request: &ErrorRequest) -> Result<Subject, LabError> {
         let light = format!("{:?}", request.lights);
-        let known = self.hash.as_ref().filter(|h| Arc::ptr_eq(&h.0, &request.scene) && h.1 == light);
+        let known = self
+            .hash
+            .as_ref()
+            .filter(|h| Arc::ptr_eq(&h.0, &request.scene) && h.1 == light);
         let sha256 = match known {
             Some(known) => known.2.clone(),
             None => {
@@ -147,27 +169,67 @@ impl Cache {
     }
 
     /// The cached reference, read once for everything that it does not depend on.
-    fn reference(&mut self, request: &ErrorRequest, subject: &Subject) -> Result<Option<Arc<Reference>>, LabError> {
-        let ErrorRequest { lab, loaded, experiment, scene, query, .. } = request;
+    fn reference(
+        &mut self,
+        request: &ErrorRequest,
+        subject: &Subject,
+    ) -> Result<Option<Arc<Reference>>, LabError> {
+        let ErrorRequest {
+            lab,
+            loaded,
+            experiment,
+            scene,
+            query,
+            ..
+        } = request;
         if self.as_of != (request.revision, query.gathered) {
             (self.warm, self.as_of) = (Warm::default(), (request.revision, query.gathered));
         }
         self.warm.keep(&experiment.graph, loaded);
         let lit = experiment.adapted(scene.clone())?;
-        let wanted = Wanted { bounces: query.bounces, samples: None, seed: None };
-        self.warm.reference(lab, (experiment, &lit), &format!("{subject:?}"), wanted, &mut |_| {})
+        let wanted = Wanted {
+            bounces: query.bounces,
+            samples: None,
+            seed: None,
+        };
+        self.warm.reference(
+            lab,
+            (experiment, &lit),
+            &format!("{subject:?}"),
+            wanted,
+            &mut |_| {},
+        )
     }
 }
 
 /// A part of the picture's light, from a fresh start.
 fn light_of(request: ErrorRequest, part: &str) -> Result<Linear, LabError> {
-    let ErrorRequest { lab, loaded, reuse, experiment, scene, lights, frames, .. } = request;
-    let missing = || LabError::Request(format!("the graph '{}' does not make the part '{part}'", loaded.graph.name));
-    let named = crate::lab::parts_of(&loaded.graph).into_iter().find(|p| p.name == part);
+    let ErrorRequest {
+        lab,
+        loaded,
+        reuse,
+        experiment,
+        scene,
+        lights,
+        frames,
+        ..
+    } = request;
+    let missing = || {
+        LabError::Request(format!(
+            "the graph '{}' does not make the part '{part}'",
+            loaded.graph.name
+        ))
+    };
+    let named = crate::lab::parts_of(&loaded.graph)
+        .into_iter()
+        .find(|p| p.name == part);
     let texture = named.ok_or_else(missing)?.texture;
-    let mut session: Session = lab.build(&experiment, &loaded, scene, vec![texture], Some(&reuse))?;
+    let mut session: Session =
+        lab.build(&experiment, &loaded, scene, vec![texture], Some(&reuse))?;
     if lights.is_some_and(|lights| !lights.light(&mut session)) {
-        return Err(LabError::Request("the light changed more than a session can follow".into()));
+        return Err(LabError::Request(
+            "the light changed more than a session can follow".into(),
+        ));
     }
     session.run(frames)?;
     session.parts()?.remove(part).ok_or_else(missing)

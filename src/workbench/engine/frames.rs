@@ -57,7 +57,8 @@ impl Run<'_> {
             goes = true;
         }
         if clock.steps != self.clock.steps {
-            self.clock.now += clock.step.unwrap_or(1.0 / 60.0) * clock.steps.saturating_sub(self.clock.steps) as f64;
+            self.clock.now += clock.step.unwrap_or(1.0 / 60.0)
+                * clock.steps.saturating_sub(self.clock.steps) as f64;
             self.clock.steps = clock.steps;
             self.request_frames(Need::Light);
         }
@@ -67,7 +68,9 @@ impl Run<'_> {
     fn frame(&mut self, number: usize, rest: bool) -> Result<(), LabError> {
         let software = self.lab.gpu.info.kind == "cpu";
         let side = &mut self.sides[number];
-        let Some(session) = &mut side.session else { return Ok(()) };
+        let Some(session) = &mut side.session else {
+            return Ok(());
+        };
         if let Some(camera) = &self.desired.camera {
             session.set_camera(camera);
         }
@@ -75,7 +78,11 @@ impl Run<'_> {
             session.place_camera(&path.at(self.clock.now));
         }
         if std::mem::take(&mut side.lights) {
-            let lights = self.desired.lights.clone().unwrap_or_else(|| LightState::of(&session.scene));
+            let lights = self
+                .desired
+                .lights
+                .clone()
+                .unwrap_or_else(|| LightState::of(&session.scene));
             lights.light(session);
         }
         session.set_time(self.clock.now);
@@ -88,10 +95,17 @@ impl Run<'_> {
             size: session.size(),
         });
         let captured = std::mem::take(&mut self.renderdoc).then(renderdoc::begin);
-        let delta = if self.desired.clock.playing { self.desired.clock.step.unwrap_or(0.0) } else { 0.0 };
-        let shares = self.lab.gpu.info.features.shares_memory && self.desired.window == Some(self.lab.gpu.info.id);
+        let delta = if self.desired.clock.playing {
+            self.desired.clock.step.unwrap_or(0.0)
+        } else {
+            0.0
+        };
+        let shares = self.lab.gpu.info.features.shares_memory
+            && self.desired.window == Some(self.lab.gpu.info.id);
         let bytes = session.program.shown_bytes();
-        let shared = shares.then(|| side.ring.free(&self.lab.gpu, bytes)).flatten();
+        let shared = shares
+            .then(|| side.ring.free(&self.lab.gpu, bytes))
+            .flatten();
         session.program.read_back(self.desired.bytes || !shares);
         session.program.hand_over(shared);
         let mut finished: Vec<FrameTimes> = session.frame(delta)?.into_iter().collect();
@@ -104,7 +118,9 @@ impl Run<'_> {
         // for the next change.
         let waits = side.frames_left == 0 || captured.is_some() || self.waited;
         let ahead = u64::from(!(software || side.last_ms > LONG || waits));
-        let Some(session) = &mut side.session else { return Ok(()) };
+        let Some(session) = &mut side.session else {
+            return Ok(());
+        };
         finished.extend(session.program.finish_to(ahead)?);
         if let Some(begun) = captured {
             self.out.send(Report::Trouble(renderdoc::end(begun)));
@@ -117,7 +133,9 @@ impl Run<'_> {
     pub(super) fn report_frames(&mut self, number: usize, finished: Vec<FrameTimes>) {
         let side = &mut self.sides[number];
         for times in finished {
-            let Some(submitted) = side.submitted.pop_front() else { continue };
+            let Some(submitted) = side.submitted.pop_front() else {
+                continue;
+            };
             side.last_ms = times.gpu_ms;
             let (bytes, shared) = (times.picture.map(Arc::new), times.handed);
             side.owes = bytes.is_none().then_some(submitted.frame);
@@ -144,17 +162,27 @@ impl Run<'_> {
 
     /// Whether a side rests whose last picture is not in main memory yet.
     pub(super) fn owes_pixels(&self) -> bool {
-        self.sides.iter().any(|s| s.owes.is_some() && s.session.is_some())
+        self.sides
+            .iter()
+            .any(|s| s.owes.is_some() && s.session.is_some())
     }
 
     /// Brings the last picture of sides that rest into main memory, where it is compared and read out.
     pub(super) fn pay_pixels(&mut self) -> Result<(), LabError> {
         for number in 0..2 {
             let side = &mut self.sides[number];
-            let Some(session) = side.session.as_mut().filter(|_| side.frames_left == 0) else { continue };
-            let Some(frame) = side.owes.take() else { continue };
+            let Some(session) = side.session.as_mut().filter(|_| side.frames_left == 0) else {
+                continue;
+            };
+            let Some(frame) = side.owes.take() else {
+                continue;
+            };
             if let Some(bytes) = session.program.shown_texels()? {
-                self.out.send(Report::Pixels { side: number, frame, bytes: Arc::new(bytes) });
+                self.out.send(Report::Pixels {
+                    side: number,
+                    frame,
+                    bytes: Arc::new(bytes),
+                });
             }
         }
         Ok(())
@@ -163,18 +191,28 @@ impl Run<'_> {
     /// Reads what the inspector and the table show: at once when still, else some times a second.
     fn read_back(&mut self, number: usize) -> Result<(), LabError> {
         let side = &mut self.sides[number];
-        let Some(session) = side.session.as_mut().filter(|_| !side.preview) else { return Ok(()) };
-        let now = side.frames_left == 0 || self.last_read_back.elapsed() > Duration::from_millis(150);
+        let Some(session) = side.session.as_mut().filter(|_| !side.preview) else {
+            return Ok(());
+        };
+        let now =
+            side.frames_left == 0 || self.last_read_back.elapsed() > Duration::from_millis(150);
         let target = self.desired.inspect.as_ref().filter(|l| l.side == number);
         if !now || (target.is_none() && self.desired.table.is_none()) {
             return Ok(());
         }
         self.last_read_back = Instant::now();
         if let Some(target) = target {
-            match session.slice(&target.texture, target.mip, target.layer, target.axis, target.slice) {
+            match session.slice(
+                &target.texture,
+                target.mip,
+                target.layer,
+                target.axis,
+                target.slice,
+            ) {
                 Ok(texels) => {
                     side.inspected = Some(target.clone());
-                    self.out.send(Report::Texels(target.clone(), Box::new(texels)));
+                    self.out
+                        .send(Report::Texels(target.clone(), Box::new(texels)));
                 }
                 Err(LabError::Vulkan(e)) => return Err(e.into()),
                 // Not made with these parameters: a build that makes it is on its way, or the window says so.
@@ -183,7 +221,11 @@ impl Run<'_> {
         }
         if number == 0
             && let Some(number) = self.desired.table
-            && let Some(name) = session.graph.tables.get(number).map(|t| t.value.list.value.buffer.clone())
+            && let Some(name) = session
+                .graph
+                .tables
+                .get(number)
+                .map(|t| t.value.list.value.buffer.clone())
             && let Some(table) = session.table(number)
         {
             let bytes = session.buffer(&name)?;

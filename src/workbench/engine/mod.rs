@@ -69,7 +69,11 @@ pub struct Engine {
 
 impl Engine {
     /// Starts the engine; `wake` is called after each report.
-    pub fn start(home: Workspace, options: GpuOptions, wake: Arc<dyn Fn() + Send + Sync>) -> Engine {
+    pub fn start(
+        home: Workspace,
+        options: GpuOptions,
+        wake: Arc<dyn Fn() + Send + Sync>,
+    ) -> Engine {
         Engine::begin(home, options, wake, None)
     }
 
@@ -92,27 +96,49 @@ impl Engine {
     ) -> Engine {
         let waits = failed.is_some();
         let patience = Some(options.patience.unwrap_or(FRAME_PATIENCE));
-        let options = GpuOptions { patience, ..options };
+        let options = GpuOptions {
+            patience,
+            ..options
+        };
         let pulse = Arc::new(Pulse::new(options.patience));
         let heart = pulse.clone();
         let desired = Arc::new(Mutex::new(failed.unwrap_or_default()));
         let (orders, inbox) = unbounded();
         let (outbox, reports) = unbounded();
-        let out = Out { reports: outbox, wake };
+        let out = Out {
+            reports: outbox,
+            wake,
+        };
         let shared = desired.clone();
-        let thread = std::thread::spawn(move || run(home, options, &shared, &inbox, &out, &heart, waits));
-        Engine { desired, orders, reports, thread: Some(thread), pulse }
+        let thread =
+            std::thread::spawn(move || run(home, options, &shared, &inbox, &out, &heart, waits));
+        Engine {
+            desired,
+            orders,
+            reports,
+            thread: Some(thread),
+            pulse,
+        }
     }
 
     /// Why the engine is no longer there to render: its thread has ended, or stands still in the driver.
     pub fn failure(&mut self) -> Option<String> {
-        if self.thread.as_ref().is_some_and(std::thread::JoinHandle::is_finished) {
+        if self
+            .thread
+            .as_ref()
+            .is_some_and(std::thread::JoinHandle::is_finished)
+        {
             let ended = self.thread.take().map(std::thread::JoinHandle::join);
-            let said = ended.and_then(Result::err).map_or(String::new(), |p| format!(": {}", said(p.as_ref())));
+            let said = ended
+                .and_then(Result::err)
+                .map_or(String::new(), |p| format!(": {}", said(p.as_ref())));
             return Some(format!("the engine ended by a fault in the program{said}"));
         }
         let silent = self.pulse.silent()?;
-        Some(format!("the engine has not answered for {:.0} s: the driver stands still", silent.as_secs_f64()))
+        Some(format!(
+            "the engine has not answered for {:.0} s: the driver stands still",
+            silent.as_secs_f64()
+        ))
     }
 
     /// Whether something is expected of the engine, so that [`Engine::failure`] is worth asking.
@@ -122,7 +148,10 @@ impl Engine {
 
     /// Works towards this from now on. Requests are numbered in their order: what answers one says its number.
     pub fn request(&self, number: u64, request: RenderRequest) {
-        *self.desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = (number, request);
+        *self
+            .desired
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner) = (number, request);
         self.order(Order::Reconcile);
     }
 
@@ -136,12 +165,18 @@ impl Engine {
     pub fn stop(mut self, patience: Duration) -> Vec<String> {
         self.order(Order::Quit);
         let until = Instant::now() + patience;
-        let Some(thread) = self.thread.take() else { return Vec::new() };
+        let Some(thread) = self.thread.take() else {
+            return Vec::new();
+        };
         while !thread.is_finished() && Instant::now() < until {
             std::thread::sleep(Duration::from_millis(5));
         }
         // A shader that never ends cannot be waited for; the thread ends with the program.
-        if thread.is_finished() { thread.join().unwrap_or_default() } else { Vec::new() }
+        if thread.is_finished() {
+            thread.join().unwrap_or_default()
+        } else {
+            Vec::new()
+        }
     }
 }
 
@@ -260,11 +295,20 @@ fn run(
             }
         }
         pulse.beat();
-        match session(home.clone(), &options, desired, inbox, (out, pulse), &mut messages) {
+        match session(
+            home.clone(),
+            &options,
+            desired,
+            inbox,
+            (out, pulse),
+            &mut messages,
+        ) {
             Ok(End::Quit) => return messages,
             Ok(End::Restart) => {}
             Err(e) => {
-                out.send(Report::DeviceFailed(format!("{e}. Change a shader or a value, or press Restart device")));
+                out.send(Report::DeviceFailed(format!(
+                    "{e}. Change a shader or a value, or press Restart device"
+                )));
                 waits = true;
             }
         }
@@ -289,14 +333,18 @@ fn session(
     let lab = Lab::open(home, options.clone())?;
     let gpu = lab.gpu.clone();
     pulse.frames_take(gpu.patience());
-    out.send(Report::Device(DeviceReport { name: gpu.info.name.clone(), driver: gpu.info.driver.clone() }));
+    out.send(Report::Device(DeviceReport {
+        name: gpu.info.name.clone(),
+        driver: gpu.info.driver.clone(),
+    }));
     let (jobs, job_box) = unbounded();
     let (done_out, done) = unbounded();
     let (loaded_out, loaded) = unbounded();
     let builder = std::thread::spawn(move || builder::run(&job_box, &done_out));
     let (error_requests, error_inbox) = unbounded();
     let results = out.clone();
-    let worker = std::thread::spawn(move || error_worker::run(&error_inbox, &|report| results.send(report)));
+    let worker =
+        std::thread::spawn(move || error_worker::run(&error_inbox, &|report| results.send(report)));
     let mut run = Run {
         lab,
         out,
@@ -311,7 +359,12 @@ fn session(
         scene_number: 0,
         loading: None,
         loaded: loaded_out,
-        clock: Clocked { now: 0.0, last: Instant::now(), steps: 0, jumps: 0 },
+        clock: Clocked {
+            now: 0.0,
+            last: Instant::now(),
+            steps: 0,
+            jumps: 0,
+        },
         turn: 0,
         restarts: false,
         renderdoc: false,
@@ -319,7 +372,12 @@ fn session(
         last_rendered: Instant::now(),
         waited: false,
     };
-    run.change(desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone())?;
+    run.change(
+        desired
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
+            .clone(),
+    )?;
     let result = loop {
         let (idle, awaits) = (!run.busy(), run.awaits_build());
         let mut orders: Vec<Order> = Vec::new();
@@ -328,7 +386,11 @@ fn session(
         let mut rests = false;
         if idle {
             pulse.rest();
-            let wait = if run.owes_pixels() { crossbeam_channel::after(REST) } else { crossbeam_channel::never() };
+            let wait = if run.owes_pixels() {
+                crossbeam_channel::after(REST)
+            } else {
+                crossbeam_channel::never()
+            };
             select! {
                 recv(inbox) -> order => orders.push(order.unwrap_or(Order::Quit)),
                 recv(done) -> d => builds.extend(d),
@@ -354,7 +416,9 @@ fn session(
         }
         let step = match rests {
             true => run.pay_pixels(),
-            false => run.handle(orders, builds, scenes, desired).and_then(|()| run.render()),
+            false => run
+                .handle(orders, builds, scenes, desired)
+                .and_then(|()| run.render()),
         };
         if let Err(e) = step {
             break Err(e);
@@ -375,13 +439,17 @@ fn session(
 
 impl Run<'_> {
     fn busy(&self) -> bool {
-        self.sides.iter().any(|s| s.session.is_some() && s.frames_left > 0)
+        self.sides
+            .iter()
+            .any(|s| s.session.is_some() && s.frames_left > 0)
     }
 
     /// Whether a build is about to be done, so that beginning a long frame of what it replaces would only delay it.
     fn awaits_build(&self) -> bool {
         let soon = |since: Instant| since.elapsed() < PATIENCE;
-        self.sides.iter().any(|s| s.last_ms > LONG && s.building.is_some_and(soon))
+        self.sides
+            .iter()
+            .any(|s| s.last_ms > LONG && s.building.is_some_and(soon))
     }
 
     fn handle(
@@ -404,7 +472,9 @@ impl Run<'_> {
                         cancel.store(true, Ordering::Relaxed);
                     }
                 }
-                Order::Capture(side, name, resources, timers) => self.capture(side, name, resources, timers),
+                Order::Capture(side, name, resources, timers) => {
+                    self.capture(side, name, resources, timers)
+                }
                 Order::MeasureError(side, query) => self.measure_error(side, query),
                 Order::Frames(count) => self.request_frames(Need::Frames(count)),
                 Order::RenderDoc => {
@@ -414,7 +484,10 @@ impl Run<'_> {
                 Order::Reconcile | Order::Quit | Order::Restart => {}
             }
         }
-        let latest = desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone();
+        let latest = desired
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
+            .clone();
         if latest.0 != self.number {
             self.change(latest)?;
         }
@@ -437,7 +510,10 @@ impl Run<'_> {
                 side.lights = true;
             }
         }
-        let unseen_sides = RenderRequest { sides: old.sides.clone(), ..RenderRequest::default() };
+        let unseen_sides = RenderRequest {
+            sides: old.sides.clone(),
+            ..RenderRequest::default()
+        };
         // Files, parameters and sizes ask for frames when what they lead to has been built. While another scene is loaded,
         // and when it cannot be, the one before answers.
         let new = &self.desired;
@@ -456,13 +532,17 @@ impl Run<'_> {
             _ => None,
         };
         let (before, now) = (pairs(&unseen_sides), pairs(&self.desired));
-        self.restarts |= now.is_some() && (before.is_none() || now == Some(true) && before == Some(false));
+        self.restarts |=
+            now.is_some() && (before.is_none() || now == Some(true) && before == Some(false));
         if let Some(need) = need {
             self.request_frames(need);
         }
         for i in 0..2 {
             if self.desired.sides[i].is_none() {
-                self.sides[i] = Side { building: self.sides[i].building, ..Side::default() };
+                self.sides[i] = Side {
+                    building: self.sides[i].building,
+                    ..Side::default()
+                };
             }
         }
         self.load_scene();

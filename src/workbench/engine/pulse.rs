@@ -38,11 +38,14 @@ impl Pulse {
     /// How long the engine has been silent, if that is too long.
     pub(super) fn silent(&self) -> Option<Duration> {
         let (last, limit) = *self.state();
-        last.map(|last| last.elapsed()).filter(|silent| *silent > limit)
+        last.map(|last| last.elapsed())
+            .filter(|silent| *silent > limit)
     }
 
     fn state(&self) -> std::sync::MutexGuard<'_, (Option<Instant>, Duration)> {
-        self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+        self.0
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 }
 
@@ -61,7 +64,11 @@ mod tests {
         let pulse = Pulse::new(None);
         pulse.state().1 = Duration::from_millis(5);
         std::thread::sleep(Duration::from_millis(10));
-        assert!(pulse.silent().is_some_and(|s| s >= Duration::from_millis(10)));
+        assert!(
+            pulse
+                .silent()
+                .is_some_and(|s| s >= Duration::from_millis(10))
+        );
         pulse.rest();
         assert!(pulse.silent().is_none() && !pulse.beats());
         pulse.beat();

@@ -35,8 +35,12 @@ impl Run<'_> {
 
     /// Reconciles a side with the desired state: sets values, or starts a build.
     pub(super) fn reconcile(&mut self, number: usize) -> Result<(), LabError> {
-        let Some(desired) = self.desired.sides[number].clone() else { return Ok(()) };
-        let Some(scene) = self.scene.clone() else { return Ok(()) };
+        let Some(desired) = self.desired.sides[number].clone() else {
+            return Ok(());
+        };
+        let Some(scene) = self.scene.clone() else {
+            return Ok(());
+        };
         if self.desired.size.0 == 0 || self.desired.size.1 == 0 {
             return Ok(());
         }
@@ -54,7 +58,8 @@ impl Run<'_> {
             return Ok(());
         }
         let same_files = |k: &Key| k.graph == key.graph && k.revision == key.revision;
-        if let (Some(session), Some(old), Some(loaded)) = (&mut side.session, &side.key, &side.loaded)
+        if let (Some(session), Some(old), Some(loaded)) =
+            (&mut side.session, &side.key, &side.loaded)
             && !side.preview
             && same_files(old)
             && (old.size, old.scene, &old.wanted) == (key.size, key.scene, &key.wanted)
@@ -66,7 +71,10 @@ impl Run<'_> {
                     side.key = Some(key);
                     side.failed = None;
                     side.answered = self.number;
-                    self.out.send(Report::Set { side: number, params });
+                    self.out.send(Report::Set {
+                        side: number,
+                        params,
+                    });
                     self.request_frames_of(1 - number, Need::Frames(1));
                     self.request_frames_of(number, Need::Light);
                     return Ok(());
@@ -79,7 +87,10 @@ impl Run<'_> {
             }
         }
         // B starts with what it can share with A, and the other way round.
-        let other = self.sides[1 - number].session.as_ref().filter(|_| self.sides[number].session.is_none());
+        let other = self.sides[1 - number]
+            .session
+            .as_ref()
+            .filter(|_| self.sides[number].session.is_none());
         let shared = other.map(|s| s.share());
         let preview_exists = self.lab.home.folders().passes.join("preview.ron").is_file();
         let side = &mut self.sides[number];
@@ -93,11 +104,23 @@ impl Run<'_> {
             experiment.graph = "preview.ron".into();
             experiment.params.clear();
         }
-        let loaded = side.loaded.clone().filter(|_| !side.preview && side.key.as_ref().is_some_and(same_files));
+        let loaded = side
+            .loaded
+            .clone()
+            .filter(|_| !side.preview && side.key.as_ref().is_some_and(same_files));
         let reuse = side.session.as_ref().map(|s| s.reusable_parts()).or(shared);
         side.building = Some(Instant::now());
         let lab = self.lab.clone();
-        let _ = self.jobs.send(Job { side: number, key, experiment, scene, reuse, loaded, preview, lab });
+        let _ = self.jobs.send(Job {
+            side: number,
+            key,
+            experiment,
+            scene,
+            reuse,
+            loaded,
+            preview,
+            lab,
+        });
         Ok(())
     }
 
@@ -111,7 +134,10 @@ impl Run<'_> {
             Ok((mut session, loaded)) => {
                 let side = &mut self.sides[number];
                 side.fresh = side.fresh || side.session.is_none() || side.preview;
-                let need = side.key.as_ref().map_or(Need::Light, |key| need(key, &done.key));
+                let need = side
+                    .key
+                    .as_ref()
+                    .map_or(Need::Light, |key| need(key, &done.key));
                 if let Some(mut old) = side.session.take() {
                     let finished = old.finish()?;
                     self.report_frames(number, finished);
@@ -134,22 +160,42 @@ impl Run<'_> {
                     let revision = done.key.revision;
                     let objects = Arc::strong_count(&self.lab.gpu);
                     let info = Arc::new(info);
-                    self.out.send(Report::Built { side: number, info, change, ms, revision, objects });
+                    self.out.send(Report::Built {
+                        side: number,
+                        info,
+                        change,
+                        ms,
+                        revision,
+                        objects,
+                    });
                 }
                 self.request_frames_of(1 - number, Need::Frames(1));
                 self.request_frames_of(number, need);
             }
             Err(error) if done.preview => {
                 // Whatever is wrong will be said by the graph itself; here is none to fall back to.
-                self.out.send(Report::Trouble(format!("no preview: {error}")));
-                let key = self.desired.sides[number].clone().map(|w| self.key(&w, number));
+                self.out
+                    .send(Report::Trouble(format!("no preview: {error}")));
+                let key = self.desired.sides[number]
+                    .clone()
+                    .map(|w| self.key(&w, number));
                 self.sides[number].failed = None;
-                if let (Some(key), Some(scene), Some(desired)) = (key, self.scene.clone(), &self.desired.sides[number])
+                if let (Some(key), Some(scene), Some(desired)) =
+                    (key, self.scene.clone(), &self.desired.sides[number])
                 {
                     let experiment = self.desired.experiment(desired);
                     self.sides[number].building = Some(Instant::now());
                     let (reuse, loaded, lab) = (None, None, self.lab.clone());
-                    let job = Job { side: number, key, experiment, scene, reuse, loaded, preview: false, lab };
+                    let job = Job {
+                        side: number,
+                        key,
+                        experiment,
+                        scene,
+                        reuse,
+                        loaded,
+                        preview: false,
+                        lab,
+                    };
                     let _ = self.jobs.send(job);
                 }
                 return Ok(());
@@ -170,15 +216,27 @@ impl Run<'_> {
             LabError::Input(list) => list,
             other => vec![Diagnostic::error(Place::default(), other.to_string())],
         };
-        self.out.send(Report::Failed { side: number, diagnostics, revision });
+        self.out.send(Report::Failed {
+            side: number,
+            diagnostics,
+            revision,
+        });
         Ok(())
     }
 }
 
 /// The frames that a build needs if it replaces another one.
 fn need(old: &Key, new: &Key) -> Need {
-    let same = Key { size: new.size, wanted: new.wanted.clone(), ..old.clone() };
-    if same == *new { Need::View } else { Need::Light }
+    let same = Key {
+        size: new.size,
+        wanted: new.wanted.clone(),
+        ..old.clone()
+    };
+    if same == *new {
+        Need::View
+    } else {
+        Need::Light
+    }
 }
 
 fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
@@ -186,12 +244,21 @@ fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
     let mut uses: Vec<PassUses> = Vec::new();
     for step in &plan.steps {
         if uses.last().is_none_or(|last| last.pass != step.pass) {
-            uses.push(PassUses { pass: step.pass, ..PassUses::default() });
+            uses.push(PassUses {
+                pass: step.pass,
+                ..PassUses::default()
+            });
         }
         let Some(of) = uses.last_mut() else { continue };
         for u in &step.uses {
             let name = session.graph.name_of(u.res).to_string();
-            for list in [u.read.then_some(&mut of.reads), u.write.then_some(&mut of.writes)].into_iter().flatten() {
+            for list in [
+                u.read.then_some(&mut of.reads),
+                u.write.then_some(&mut of.writes),
+            ]
+            .into_iter()
+            .flatten()
+            {
                 if !list.contains(&name) {
                     list.push(name.clone());
                 }
@@ -199,7 +266,11 @@ fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
         }
     }
     let written = |name: &String| uses.iter().any(|u| u.writes.contains(name));
-    let mut empty: Vec<String> = plan.missing.iter().map(|r| session.graph.name_of(*r).to_string()).collect();
+    let mut empty: Vec<String> = plan
+        .missing
+        .iter()
+        .map(|r| session.graph.name_of(*r).to_string())
+        .collect();
     empty.retain(|name| !written(name));
     empty.dedup();
     GraphInfo {

@@ -14,7 +14,10 @@ pub type Capture = std::convert::Infallible;
 pub fn begin() -> Result<Capture, String> {
     // Loading its library late would capture nothing, so that is not tried.
     if !std::fs::read_to_string("/proc/self/maps").is_ok_and(|maps| maps.contains("librenderdoc")) {
-        return Err("RenderDoc is not there: start conelab from it, or with `renderdoccmd capture conelab`".into());
+        return Err(
+            "RenderDoc is not there: start conelab from it, or with `renderdoccmd capture conelab`"
+                .into(),
+        );
     }
     let mut api = Capture::new().map_err(|e| format!("RenderDoc does not answer: {e}"))?;
     api.start_frame_capture(std::ptr::null(), std::ptr::null());

@@ -13,7 +13,11 @@ use std::time::{Duration, Instant};
 
 impl Run<'_> {
     pub(super) fn load_scene(&mut self) {
-        let key = (self.desired.scene.clone(), self.desired.environment.clone(), self.desired.scene_revision);
+        let key = (
+            self.desired.scene.clone(),
+            self.desired.environment.clone(),
+            self.desired.scene_revision,
+        );
         if key.0.is_empty() || self.scene_key.as_ref() == Some(&key) {
             return;
         }
@@ -45,10 +49,19 @@ impl Run<'_> {
                 if !key.1.is_empty() {
                     files.push(key.1.clone().into());
                 }
-                (scene.and_then(|scene| scene.under(Path::new(&key.1))), files)
+                (
+                    scene.and_then(|scene| scene.under(Path::new(&key.1))),
+                    files,
+                )
             };
             let (scene, files) = guarded(open).unwrap_or_else(|message| {
-                (Err(SceneError::Model { path: key.0.clone().into(), message }), vec![key.0.clone().into()])
+                (
+                    Err(SceneError::Model {
+                        path: key.0.clone().into(),
+                        message,
+                    }),
+                    vec![key.0.clone().into()],
+                )
             });
             // A load that was replaced by another has nobody to report to.
             if !cancel.load(Ordering::Relaxed) || matches!(scene, Err(SceneError::Cancelled)) {
@@ -58,7 +71,10 @@ impl Run<'_> {
         });
     }
 
-    pub(super) fn scene_came(&mut self, scene: Result<Arc<Scene>, SceneError>) -> Result<(), LabError> {
+    pub(super) fn scene_came(
+        &mut self,
+        scene: Result<Arc<Scene>, SceneError>,
+    ) -> Result<(), LabError> {
         match scene {
             Ok(scene) => {
                 self.loading = None;
@@ -72,10 +88,15 @@ impl Run<'_> {
             }
             Err(SceneError::Cancelled) => {
                 // Cancelled for another scene, the other is being loaded by now.
-                if self.loading.as_ref().is_some_and(|c| c.load(Ordering::Relaxed)) {
+                if self
+                    .loading
+                    .as_ref()
+                    .is_some_and(|c| c.load(Ordering::Relaxed))
+                {
                     self.loading = None;
                     self.stay();
-                    self.out.send(Report::LoadFailed("loading was cancelled".into()));
+                    self.out
+                        .send(Report::LoadFailed("loading was cancelled".into()));
                 }
             }
             Err(e) => {
@@ -89,7 +110,8 @@ impl Run<'_> {
 
     /// The scene before stays: the window will ask for it again, and it need not be loaded.
     fn stay(&mut self) {
-        let name = |key: &Option<(String, String, u64)>| key.as_ref().map(|k| (k.0.clone(), k.1.clone()));
+        let name =
+            |key: &Option<(String, String, u64)>| key.as_ref().map(|k| (k.0.clone(), k.1.clone()));
         if self.loaded_key.is_some() && name(&self.loaded_key) != name(&self.scene_key) {
             self.scene_key.clone_from(&self.loaded_key);
         }

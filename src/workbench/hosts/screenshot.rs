@@ -112,14 +112,26 @@ pub fn take(options: Options, gpu: &GpuOptions, script: Script) -> Result<Shot, 
     let gpu = Gpu::open(gpu)?;
     let painter = Painter::offscreen(&gpu, PICTURES)?;
     let textures = (0..PICTURES).map(|i| painter.picture(i)).collect();
-    let mut workbench = Workbench::new(options, Arc::new(move || wake.send(()).unwrap_or_default()))?;
+    let mut workbench =
+        Workbench::new(options, Arc::new(move || wake.send(()).unwrap_or_default()))?;
     workbench.paints_on(gpu.info.id);
     let context = egui::Context::default();
     context.enable_accesskit();
     let start = Instant::now();
-    let mut host = Host { workbench, context, painter, textures, nodes: HashMap::new(), script, start, woken };
+    let mut host = Host {
+        workbench,
+        context,
+        painter,
+        textures,
+        nodes: HashMap::new(),
+        script,
+        start,
+        woken,
+    };
     let shot = host.run();
-    let Host { workbench, painter, .. } = host;
+    let Host {
+        workbench, painter, ..
+    } = host;
     let mut messages = workbench.close();
     drop(painter);
     messages.extend(gpu.messages());
@@ -136,7 +148,12 @@ impl Host {
             self.frame(vec![Event::PointerMoved(at)])?;
             for pressed in [true, false] {
                 let button = PointerButton::Primary;
-                self.frame(vec![Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE }])?;
+                self.frame(vec![Event::PointerButton {
+                    pos: at,
+                    button,
+                    pressed,
+                    modifiers: Modifiers::NONE,
+                }])?;
             }
             self.settle()?;
         }
@@ -153,17 +170,34 @@ impl Host {
         }
         let pace = self.script.pace.map(|pace| self.pace(pace)).transpose()?;
         let (size, bytes) = self.painter.read()?;
-        let edit_ms = self.script.edit.clone().map(|edit| self.edits(&edit)).transpose()?.map(spread);
-        Ok(Shot { edit_ms, size, bytes, cpu_ms: spread(cpu), gpu_ms: spread(gpu), copy_ms: spread(copies), pace })
+        let edit_ms = self
+            .script
+            .edit
+            .clone()
+            .map(|edit| self.edits(&edit))
+            .transpose()?
+            .map(spread);
+        Ok(Shot {
+            edit_ms,
+            size,
+            bytes,
+            cpu_ms: spread(cpu),
+            gpu_ms: spread(gpu),
+            copy_ms: spread(copies),
+            pace,
+        })
     }
 
     /// Paints while the engine makes pictures.
     fn pace(&mut self, pace: Pace) -> Result<Kept, LabError> {
         let stamp = |host: &Host| host.workbench.last_picture();
         let Some((first, _)) = stamp(self) else {
-            return Err(LabError::Request("there is no picture to keep pace with".into()));
+            return Err(LabError::Request(
+                "there is no picture to keep pace with".into(),
+            ));
         };
-        let (mut engine, mut paints, mut delays, mut cpu) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut engine, mut paints, mut delays, mut cpu) =
+            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (mut seen, mut painted, mut early) = (stamp(self), Instant::now(), None);
         let (mut until, mut next) = (painted + self.script.patience, painted);
         while seen.is_some_and(|(frame, _)| frame - first < pace.pictures as u64) {
@@ -191,11 +225,15 @@ impl Host {
                 cpu.push(ms);
                 painted = now;
             }
-            if early.is_none() && seen.is_some_and(|(frame, _)| frame - first >= pace.pictures as u64 / 10) {
+            if early.is_none()
+                && seen.is_some_and(|(frame, _)| frame - first >= pace.pictures as u64 / 10)
+            {
                 early = resident_bytes();
             }
             if now > until {
-                return Err(LabError::Request("the engine makes no more pictures: is it kept rendering?".into()));
+                return Err(LabError::Request(
+                    "the engine makes no more pictures: is it kept rendering?".into(),
+                ));
             }
         }
         Ok(Kept {
@@ -211,9 +249,14 @@ impl Host {
 
     /// Saves a file again and again and waits for each picture; the file ends as it was.
     fn edits(&mut self, edit: &Edit) -> Result<Vec<f64>, LabError> {
-        let original = std::fs::read_to_string(&edit.file).map_err(|e| FileError::content(&edit.file, e))?;
+        let original =
+            std::fs::read_to_string(&edit.file).map_err(|e| FileError::content(&edit.file, e))?;
         if original.matches(&edit.from).count() != 1 {
-            let message = format!("'{}' must stand once in '{}'", edit.from, edit.file.display());
+            let message = format!(
+                "'{}' must stand once in '{}'",
+                edit.from,
+                edit.file.display()
+            );
             return Err(LabError::Request(message));
         }
         let changed = original.replace(&edit.from, &edit.to);
@@ -245,14 +288,31 @@ impl Host {
         {
             return Ok(Pos2::new(x, y));
         }
-        let of = |node: &Node| node.label().or(node.value()).map(str::to_string).unwrap_or_default();
+        let of = |node: &Node| {
+            node.label()
+                .or(node.value())
+                .map(str::to_string)
+                .unwrap_or_default()
+        };
         let with = |fits: &dyn Fn(&str) -> bool| {
-            let found = self.nodes.values().filter(|n| fits(&of(n))).filter_map(|n| n.bounds());
-            found.min_by(|a, b| (a.y0, a.x0).partial_cmp(&(b.y0, b.x0)).unwrap_or(std::cmp::Ordering::Equal))
+            let found = self
+                .nodes
+                .values()
+                .filter(|n| fits(&of(n)))
+                .filter_map(|n| n.bounds());
+            found.min_by(|a, b| {
+                (a.y0, a.x0)
+                    .partial_cmp(&(b.y0, b.x0))
+                    .unwrap_or(std::cmp::Ordering::Equal)
+            })
         };
         let bounds = with(&|l| l == label).or_else(|| with(&|l| l.starts_with(label)));
-        let bounds = bounds.ok_or_else(|| LabError::Request(format!("no widget is labelled '{label}'")))?;
-        Ok(Pos2::new((bounds.x0 + bounds.x1) as f32 / 2.0, (bounds.y0 + bounds.y1) as f32 / 2.0) / self.script.scale)
+        let bounds =
+            bounds.ok_or_else(|| LabError::Request(format!("no widget is labelled '{label}'")))?;
+        Ok(Pos2::new(
+            (bounds.x0 + bounds.x1) as f32 / 2.0,
+            (bounds.y0 + bounds.y1) as f32 / 2.0,
+        ) / self.script.scale)
     }
 
     /// Frames until everything requested is there and nothing moves any more.
@@ -262,11 +322,20 @@ impl Host {
         while calm < 8 {
             if Instant::now() > until {
                 let seconds = self.script.patience.as_secs();
-                let why = self.workbench.trouble().map_or(String::new(), |t| format!(": {t}"));
-                return Err(LabError::Request(format!("the picture was not there after {seconds} s{why}")));
+                let why = self
+                    .workbench
+                    .trouble()
+                    .map_or(String::new(), |t| format!(": {t}"));
+                return Err(LabError::Request(format!(
+                    "the picture was not there after {seconds} s{why}"
+                )));
             }
             self.frame(Vec::new())?;
-            calm = if self.workbench.settled() { calm + 1 } else { 0 };
+            calm = if self.workbench.settled() {
+                calm + 1
+            } else {
+                0
+            };
             let _ = self.woken.recv_timeout(Duration::from_millis(20));
         }
         Ok(())
@@ -277,13 +346,20 @@ impl Host {
         let (width, height) = self.script.size;
         let scale = self.script.scale;
         let mut input = RawInput {
-            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, Vec2::new(width as f32, height as f32) / scale)),
+            screen_rect: Some(Rect::from_min_size(
+                Pos2::ZERO,
+                Vec2::new(width as f32, height as f32) / scale,
+            )),
             time: Some(self.start.elapsed().as_secs_f64()),
             focused: true,
             events,
             ..RawInput::default()
         };
-        input.viewports.entry(input.viewport_id).or_default().native_pixels_per_point = Some(scale);
+        input
+            .viewports
+            .entry(input.viewport_id)
+            .or_default()
+            .native_pixels_per_point = Some(scale);
         self.workbench.poll_events();
         let begun = Instant::now();
         let (workbench, textures) = (&mut self.workbench, &self.textures);
@@ -291,10 +367,22 @@ impl Host {
         if let Some(update) = output.platform_output.accesskit_update {
             self.nodes = update.nodes.into_iter().collect();
         }
-        let primitives = self.context.tessellate(output.shapes, output.pixels_per_point);
-        let pixels: Vec<Pixels<'_>> = workbench.pixels().iter().filter_map(NewPixels::source).collect();
+        let primitives = self
+            .context
+            .tessellate(output.shapes, output.pixels_per_point);
+        let pixels: Vec<Pixels<'_>> = workbench
+            .pixels()
+            .iter()
+            .filter_map(NewPixels::source)
+            .collect();
         let size = self.script.size;
-        if self.painter.paint(size, output.pixels_per_point, output.textures_delta, &primitives, &pixels)? {
+        if self.painter.paint(
+            size,
+            output.pixels_per_point,
+            output.textures_delta,
+            &primitives,
+            &pixels,
+        )? {
             drop(pixels);
             workbench.painted();
         }
@@ -307,5 +395,9 @@ impl Host {
 fn resident_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|l| l.strip_prefix("VmRSS:"))?;
-    line.split_whitespace().next()?.parse::<u64>().ok().map(|kib| kib * 1024)
+    line.split_whitespace()
+        .next()?
+        .parse::<u64>()
+        .ok()
+        .map(|kib| kib * 1024)
 }

@@ -77,31 +77,56 @@ pub fn run(options: Options, window: WindowOptions) -> Result<(), LabError> {
 impl App {
     fn create(&mut self, event_loop: &ActiveEventLoop) -> Result<Open, LabError> {
         let (width, height) = self.options.size;
-        let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next());
+        let monitor = event_loop
+            .primary_monitor()
+            .or_else(|| event_loop.available_monitors().next());
         let size = match monitor {
-            Some(m) => clamped((width, height), m.scale_factor(), (m.size().width, m.size().height)),
+            Some(m) => clamped(
+                (width, height),
+                m.scale_factor(),
+                (m.size().width, m.size().height),
+            ),
             None => LogicalSize::new(f64::from(width), f64::from(height)),
         };
-        let attributes = Window::default_attributes().with_title("conelab").with_inner_size(size);
+        let attributes = Window::default_attributes()
+            .with_title("conelab")
+            .with_inner_size(size);
         let window = event_loop
             .create_window(attributes)
             .map_err(|e| LabError::Request(format!("cannot open a window: {e}")))?;
         let window = Arc::new(window);
-        let display = window.display_handle().map_err(|e| VulkanError::Window(e.to_string()))?.as_raw();
+        let display = window
+            .display_handle()
+            .map_err(|e| VulkanError::Window(e.to_string()))?
+            .as_raw();
         let gpu = Gpu::open_for(&self.options.gpu, Some(display))?;
         let surface = Surface::new(&gpu, window.clone())?;
         let size = window.inner_size();
         let painter = Painter::for_window(&gpu, surface, (size.width, size.height), PICTURES)?;
         let side = gpu.info.limits.max_image_dimension2_d as usize;
         let scale = Some(window.scale_factor() as f32);
-        let state =
-            egui_winit::State::new(self.context.clone(), ViewportId::ROOT, &*window, scale, window.theme(), Some(side));
+        let state = egui_winit::State::new(
+            self.context.clone(),
+            ViewportId::ROOT,
+            &*window,
+            scale,
+            window.theme(),
+            Some(side),
+        );
         let textures = (0..PICTURES).map(|i| painter.picture(i)).collect();
-        Ok(Open { state, painter, textures, gpu, window })
+        Ok(Open {
+            state,
+            painter,
+            textures,
+            gpu,
+            window,
+        })
     }
 
     fn paint(&mut self) -> Result<(), LabError> {
-        let (Some(open), Some(workbench)) = (&mut self.open, &mut self.workbench) else { return Ok(()) };
+        let (Some(open), Some(workbench)) = (&mut self.open, &mut self.workbench) else {
+            return Ok(());
+        };
         if workbench.is_described() {
             self.context.enable_accesskit();
         }
@@ -109,28 +134,54 @@ impl App {
         let input = open.state.take_egui_input(&open.window);
         let textures = &open.textures;
         let mut output = self.context.run_ui(input, |ui| workbench.ui(ui, textures));
-        let more = workbench.describe(output.platform_output.accesskit_update.as_ref(), output.pixels_per_point);
+        let more = workbench.describe(
+            output.platform_output.accesskit_update.as_ref(),
+            output.pixels_per_point,
+        );
         output.platform_output.accesskit_update = None;
-        open.state.handle_platform_output(&open.window, output.platform_output);
-        let commands = output.viewport_output.get(&ViewportId::ROOT).map_or(&[][..], |v| &v.commands);
+        open.state
+            .handle_platform_output(&open.window, output.platform_output);
+        let commands = output
+            .viewport_output
+            .get(&ViewportId::ROOT)
+            .map_or(&[][..], |v| &v.commands);
         for command in commands {
             if let egui::ViewportCommand::Fullscreen(on) = command {
-                open.window.set_fullscreen(on.then_some(winit::window::Fullscreen::Borderless(None)));
+                open.window
+                    .set_fullscreen(on.then_some(winit::window::Fullscreen::Borderless(None)));
             }
         }
-        let primitives = self.context.tessellate(output.shapes, output.pixels_per_point);
+        let primitives = self
+            .context
+            .tessellate(output.shapes, output.pixels_per_point);
         let size = open.window.inner_size();
-        let pixels: Vec<Pixels<'_>> = workbench.pixels().iter().filter_map(NewPixels::source).collect();
+        let pixels: Vec<Pixels<'_>> = workbench
+            .pixels()
+            .iter()
+            .filter_map(NewPixels::source)
+            .collect();
         let deltas = output.textures_delta;
-        let painted =
-            open.painter.paint((size.width, size.height), output.pixels_per_point, deltas, &primitives, &pixels)?;
+        let painted = open.painter.paint(
+            (size.width, size.height),
+            output.pixels_per_point,
+            deltas,
+            &primitives,
+            &pixels,
+        )?;
         drop(pixels);
         if painted {
             workbench.painted();
         }
-        let delay = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |v| v.repaint_delay);
+        let delay = output
+            .viewport_output
+            .get(&ViewportId::ROOT)
+            .map_or(Duration::MAX, |v| v.repaint_delay);
         let delay = soon.map_or(delay, |s| delay.min(s));
-        let delay = if more { delay.min(Duration::from_millis(110)) } else { delay };
+        let delay = if more {
+            delay.min(Duration::from_millis(110))
+        } else {
+            delay
+        };
         self.repaint_at = Instant::now().checked_add(delay);
         Ok(())
     }
@@ -139,7 +190,13 @@ impl App {
         if let Some(workbench) = self.workbench.take() {
             self.messages.extend(workbench.close());
         }
-        if let Some(Open { painter, gpu, state, .. }) = self.open.take() {
+        if let Some(Open {
+            painter,
+            gpu,
+            state,
+            ..
+        }) = self.open.take()
+        {
             drop(painter);
             drop(state);
             self.messages.extend(gpu.messages());
@@ -156,8 +213,17 @@ impl App {
 
 /// A size in points that fits a monitor of so many pixels.
 fn clamped(points: (u32, u32), scale: f64, monitor: (u32, u32)) -> LogicalSize<f64> {
-    let most = |pixels: u32| if pixels == 0 { f64::INFINITY } else { f64::from(pixels) / scale.max(0.1) };
-    LogicalSize::new(f64::from(points.0).min(most(monitor.0)), f64::from(points.1).min(most(monitor.1)))
+    let most = |pixels: u32| {
+        if pixels == 0 {
+            f64::INFINITY
+        } else {
+            f64::from(pixels) / scale.max(0.1)
+        }
+    };
+    LogicalSize::new(
+        f64::from(points.0).min(most(monitor.0)),
+        f64::from(points.1).min(most(monitor.1)),
+    )
 }
 
 impl ApplicationHandler<Wake> for App {
@@ -226,9 +292,18 @@ mod tests {
 
     #[test]
     fn a_window_fits_its_monitor() {
-        assert_eq!(clamped((1600, 900), 2.0, (1600, 900)), LogicalSize::new(800.0, 450.0));
-        assert_eq!(clamped((1600, 900), 1.0, (3840, 2160)), LogicalSize::new(1600.0, 900.0));
+        assert_eq!(
+            clamped((1600, 900), 2.0, (1600, 900)),
+            LogicalSize::new(800.0, 450.0)
+        );
+        assert_eq!(
+            clamped((1600, 900), 1.0, (3840, 2160)),
+            LogicalSize::new(1600.0, 900.0)
+        );
         // Some servers know no size.
-        assert_eq!(clamped((1600, 900), 1.0, (0, 0)), LogicalSize::new(1600.0, 900.0));
+        assert_eq!(
+            clamped((1600, 900), 1.0, (0, 0)),
+            LogicalSize::new(1600.0, 900.0)
+        );
     }
 }

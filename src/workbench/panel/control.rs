@@ -19,24 +19,46 @@ pub(crate) fn control(
     {
         return response;
     }
-    let name = if changed { RichText::new(title).color(CHANGED) } else { RichText::new(title) };
-    let unit = if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) };
+    let name = if changed {
+        RichText::new(title).color(CHANGED)
+    } else {
+        RichText::new(title)
+    };
+    let unit = if param.unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {}", param.unit)
+    };
     let (low, high) = param.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
     let bounded = low.is_finite() && high.is_finite();
     let drag = |step: f64| param.step.unwrap_or(step);
     match (value, &param.kind) {
         (Value::Bool(v), _) => ui.checkbox(v, name),
         (Value::Int(v), _) => {
-            let range = if bounded { (low as i64, high as i64) } else { (i64::from(i32::MIN), i64::from(i32::MAX)) };
+            let range = if bounded {
+                (low as i64, high as i64)
+            } else {
+                (i64::from(i32::MIN), i64::from(i32::MAX))
+            };
             let slid = bounded.then(|| slider(ui, param, title, v, range));
-            let number = DragValue::new(v).suffix(unit).range(range.0..=range.1).speed(drag(0.1));
+            let number = DragValue::new(v)
+                .suffix(unit)
+                .range(range.0..=range.1)
+                .speed(drag(0.1));
             joined(slid, spin(ui, number, title), ui.label(name))
         }
         (Value::Float(v), _) => {
             let slid = bounded.then(|| slider(ui, param, title, v, (low, high)));
             let span = if bounded { (high - low) / 500.0 } else { 0.01 };
-            let number = DragValue::new(v).suffix(unit).range(low..=high).clamp_existing_to_range(false);
-            joined(slid, spin(ui, number.speed(drag(span)).max_decimals(6), title), ui.label(name))
+            let number = DragValue::new(v)
+                .suffix(unit)
+                .range(low..=high)
+                .clamp_existing_to_range(false);
+            joined(
+                slid,
+                spin(ui, number.speed(drag(span)).max_decimals(6), title),
+                ui.label(name),
+            )
         }
         (Value::Vector(v), Kind::Colour) if v.len() == 3 => {
             let mut rgb = [v[0] as f32, v[1] as f32, v[2] as f32];
@@ -48,7 +70,10 @@ pub(crate) fn control(
         }
         (Value::Vector(v), _) => {
             let numbers = v.iter_mut().zip(["x", "y", "z", "w"]).map(|(x, axis)| {
-                let number = DragValue::new(x).speed(drag(0.01)).range(low..=high).clamp_existing_to_range(false);
+                let number = DragValue::new(x)
+                    .speed(drag(0.01))
+                    .range(low..=high)
+                    .clamp_existing_to_range(false);
                 spin(ui, number, &format!("{title} {axis}"))
             });
             let numbers = numbers.reduce(|a, b| a | b);
@@ -61,7 +86,8 @@ pub(crate) fn control(
                 for (i, option) in options.iter().enumerate() {
                     ui.horizontal(|ui| {
                         let label = ui.selectable_value(v, option.clone(), option);
-                        if let Some(help) = param.option_help.get(i).filter(|help| !help.is_empty()) {
+                        if let Some(help) = param.option_help.get(i).filter(|help| !help.is_empty())
+                        {
                             label.on_hover_text(help);
                             ui.weak(RichText::new(help).small());
                         }
@@ -76,11 +102,21 @@ pub(crate) fn control(
 }
 
 /// A number that the graph chooses: `auto (78)`, and edits start from 78. Nothing for values that are no numbers.
-fn automatic(ui: &mut Ui, param: &Param, title: &str, value: &mut Value, auto: f64) -> Option<Response> {
+fn automatic(
+    ui: &mut Ui,
+    param: &Param,
+    title: &str,
+    value: &mut Value,
+    auto: f64,
+) -> Option<Response> {
     let default = param.default.number()?;
     let (low, high) = param.range?;
     let (mut number, shown) = (auto, short_number(auto));
-    let unit = if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) };
+    let unit = if param.unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {}", param.unit)
+    };
     let chosen = format!("auto ({shown}{unit})");
     let name = format!("{title}, {chosen}");
     let slid = slider(ui, param, title, &mut number, (low, high));
@@ -88,10 +124,20 @@ fn automatic(ui: &mut Ui, param: &Param, title: &str, value: &mut Value, auto: f
         .range(low..=high)
         .clamp_existing_to_range(false)
         .speed(param.step.unwrap_or((high - low) / 500.0))
-        .custom_formatter(move |x, _| if x == auto { chosen.clone() } else { short_number(x) })
-        .custom_parser(
-            move |text| if text.trim().starts_with("auto") { Some(default) } else { text.trim().parse().ok() },
-        );
+        .custom_formatter(move |x, _| {
+            if x == auto {
+                chosen.clone()
+            } else {
+                short_number(x)
+            }
+        })
+        .custom_parser(move |text| {
+            if text.trim().starts_with("auto") {
+                Some(default)
+            } else {
+                text.trim().parse().ok()
+            }
+        });
     let response = joined(Some(slid), spin(ui, field, &name), ui.label(title));
     if number != auto {
         *value = match value {
@@ -116,7 +162,9 @@ fn slider<N: egui::emath::Numeric>(
 ) -> Response {
     // Ranges over many powers of ten, with no negative part, are easier on a logarithmic slider.
     let (least, most) = (low.to_f64(), high.to_f64());
-    let slider = egui::Slider::new(v, low..=high).show_value(false).logarithmic(least > 0.0 && most / least >= 1000.0);
+    let slider = egui::Slider::new(v, low..=high)
+        .show_value(false)
+        .logarithmic(least > 0.0 && most / least >= 1000.0);
     // A value between the steps, or one that rounding moves, must not change because it is shown.
     let slider = slider.clamping(egui::SliderClamping::Edits);
     let step = param.step.or(N::INTEGRAL.then_some(1.0));

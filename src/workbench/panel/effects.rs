@@ -40,7 +40,13 @@ pub struct Effects {
 
 impl Default for Effects {
     fn default() -> Effects {
-        Effects { known: [None, None], waiting: None, working: false, old: [false; 2], made: unbounded() }
+        Effects {
+            known: [None, None],
+            waiting: None,
+            working: false,
+            old: [false; 2],
+            made: unbounded(),
+        }
     }
 }
 
@@ -75,12 +81,18 @@ impl Workbench {
         }
         let same = |a: &Of, b: &Of| Arc::ptr_eq(&a.0, &b.0) && a.1 == b.1;
         let unknown = [0, 1].map(|side| {
-            let of = (self.sides[side].info.clone()?, self.desired.sides[side].as_ref()?.params.clone());
-            let is_known = self.effects.known[side].as_ref().is_some_and(|k| same(&k.0, &of));
+            let of = (
+                self.sides[side].info.clone()?,
+                self.desired.sides[side].as_ref()?.params.clone(),
+            );
+            let is_known = self.effects.known[side]
+                .as_ref()
+                .is_some_and(|k| same(&k.0, &of));
             (!is_known).then_some((side, of))
         });
         // What is asked for and does not run yet counts as unknown too.
-        let old = [0, 1].map(|side| unknown[side].is_some() || self.sides[side].behind(self.sent_number));
+        let old =
+            [0, 1].map(|side| unknown[side].is_some() || self.sides[side].behind(self.sent_number));
         if std::mem::replace(&mut self.effects.old, old) != old {
             ui.ctx().request_repaint();
         }
@@ -89,8 +101,16 @@ impl Workbench {
             self.effects.waiting = None;
             return;
         };
-        let waiting = self.effects.waiting.take().filter(|w| w.0 == side && same(&w.1, &of));
-        let (.., since) = *self.effects.waiting.insert(waiting.unwrap_or((side, of.clone(), Instant::now())));
+        let waiting = self
+            .effects
+            .waiting
+            .take()
+            .filter(|w| w.0 == side && same(&w.1, &of));
+        let (.., since) =
+            *self
+                .effects
+                .waiting
+                .insert(waiting.unwrap_or((side, of.clone(), Instant::now())));
         if self.effects.working || since.elapsed() < QUIET {
             ui.ctx().request_repaint_after(QUIET);
             return;
@@ -118,9 +138,22 @@ fn find((info, set): &Of, compiler: &ShaderCompiler) -> Found {
         set: &set,
         linked: &info.linked,
         passes: &info.passes,
-        written: info.uses.iter().flat_map(|u| &u.writes).map(String::as_str).collect(),
+        written: info
+            .uses
+            .iter()
+            .flat_map(|u| &u.writes)
+            .map(String::as_str)
+            .collect(),
     };
     let taken = |name: &str| effective(&set, params.param(name)?);
-    let effective = params.list.iter().filter_map(|p| Some((p.name.clone(), taken(&p.name)?))).collect();
-    Found { idle: idle(&running, compiler), effective, resting: resting(&set) }
+    let effective = params
+        .list
+        .iter()
+        .filter_map(|p| Some((p.name.clone(), taken(&p.name)?)))
+        .collect();
+    Found {
+        idle: idle(&running, compiler),
+        effective,
+        resting: resting(&set),
+    }
 }

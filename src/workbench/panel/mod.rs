@@ -59,36 +59,57 @@ impl Panel {
             matches(graph, p, &needle) && (!self.only_changed || is_changed(graph, side, p))
         };
         let searching = !needle.is_empty() || self.only_changed;
-        let shown = Shown { graph, found, old, other };
+        let shown = Shown {
+            graph,
+            found,
+            old,
+            other,
+        };
         // Wide rows scroll: they must not make the panel wider.
         egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
             let mut any = false;
             if !searching && !graph.pinned.is_empty() {
-                egui::CollapsingHeader::new("Pinned").default_open(true).show(ui, |ui| shown.pinned(ui, side));
+                egui::CollapsingHeader::new("Pinned")
+                    .default_open(true)
+                    .show(ui, |ui| shown.pinned(ui, side));
             }
             for (number, group) in groups(graph).into_iter().enumerate() {
                 let of_group = |p: &&Param| p.group == group;
-                let list: Vec<&Param> = graph.params.offered().filter(of_group).filter(|p| wanted(p, side)).collect();
+                let list: Vec<&Param> = graph
+                    .params
+                    .offered()
+                    .filter(of_group)
+                    .filter(|p| wanted(p, side))
+                    .collect();
                 if list.is_empty() {
                     continue;
                 }
                 any = true;
-                let count = graph.params.offered().filter(of_group).filter(|p| is_changed(graph, side, p)).count();
+                let count = graph
+                    .params
+                    .offered()
+                    .filter(of_group)
+                    .filter(|p| is_changed(graph, side, p))
+                    .count();
                 let title = if group.is_empty() { "Other" } else { group };
                 let title = match count {
                     0 => RichText::new(title),
                     n => RichText::new(format!("{title} ({n})")).color(CHANGED),
                 };
                 // What a search opens is folded again after it, as it was.
-                let header = egui::CollapsingHeader::new(title).id_salt((searching, "group", number));
+                let header =
+                    egui::CollapsingHeader::new(title).id_salt((searching, "group", number));
                 header.default_open(searching).show(ui, |ui| {
                     for param in list {
                         shown.row(ui, param, &param.name, side);
                     }
                 });
             }
-            for (name, instead) in
-                graph.params.retired.iter().filter(|r| searching && !self.only_changed && !r.0.contains('='))
+            for (name, instead) in graph
+                .params
+                .retired
+                .iter()
+                .filter(|r| searching && !self.only_changed && !r.0.contains('='))
             {
                 if folded(name).contains(&needle) && graph.params.index(name).is_none() {
                     any = true;
@@ -96,30 +117,50 @@ impl Panel {
                 }
             }
             if !any {
-                ui.weak(if self.only_changed && needle.is_empty() { "nothing is changed" } else { "nothing matches" });
+                ui.weak(if self.only_changed && needle.is_empty() {
+                    "nothing is changed"
+                } else {
+                    "nothing matches"
+                });
             }
         });
     }
 
     fn top(&mut self, ui: &mut Ui, graph: &Graph, side: &mut SideRequest) {
         let top = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
-        ui.allocate_ui_with_layout(top, egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let any = graph.params.offered().any(|p| is_changed(graph, side, p));
-            let reset = egui::Button::new(RichText::new("reset all")).small();
-            if ui.add_enabled(any, reset).clicked() {
-                side.params.clear();
-            }
-            ui.checkbox(&mut self.only_changed, "changed").on_hover_text("Only what is not at its default");
-            let clear = ui.add_enabled(!self.search.is_empty(), egui::Button::new("×").small().frame(false));
-            clear.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, "clear the search"));
-            let hint = egui::TextEdit::singleline(&mut self.search).id(search_id()).hint_text("search");
-            let field = ui.add(hint.desired_width(f32::INFINITY)).on_hover_text("Ctrl F; Esc clears");
-            field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "search parameters"));
-            self.typing = field.has_focus();
-            if clear.clicked() {
-                self.search.clear();
-            }
-        });
+        ui.allocate_ui_with_layout(
+            top,
+            egui::Layout::right_to_left(egui::Align::Center),
+            |ui| {
+                let any = graph.params.offered().any(|p| is_changed(graph, side, p));
+                let reset = egui::Button::new(RichText::new("reset all")).small();
+                if ui.add_enabled(any, reset).clicked() {
+                    side.params.clear();
+                }
+                ui.checkbox(&mut self.only_changed, "changed")
+                    .on_hover_text("Only what is not at its default");
+                let clear = ui.add_enabled(
+                    !self.search.is_empty(),
+                    egui::Button::new("×").small().frame(false),
+                );
+                clear.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::WidgetType::Button, true, "clear the search")
+                });
+                let hint = egui::TextEdit::singleline(&mut self.search)
+                    .id(search_id())
+                    .hint_text("search");
+                let field = ui
+                    .add(hint.desired_width(f32::INFINITY))
+                    .on_hover_text("Ctrl F; Esc clears");
+                field.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "search parameters")
+                });
+                self.typing = field.has_focus();
+                if clear.clicked() {
+                    self.search.clear();
+                }
+            },
+        );
     }
 }
 
@@ -139,20 +180,34 @@ impl Shown<'_> {
 
     /// The choice with which most of the dimmed pinned parameters would count, a click away.
     fn needed(&self, ui: &mut Ui, side: &mut SideRequest) {
-        let reasons = self.graph.pinned.iter().filter_map(|p| self.found?.idle.get(&p.0));
+        let reasons = self
+            .graph
+            .pinned
+            .iter()
+            .filter_map(|p| self.found?.idle.get(&p.0));
         let needs: Vec<&(String, String)> = reasons.flat_map(|r| &r.needs).collect();
         let count = |need: &(String, String)| needs.iter().filter(|n| **n == need).count();
         // Of several, the first.
-        let Some((name, option)) = needs.iter().rev().max_by_key(|n| count(n)) else { return };
-        let Some(param) = self.graph.params.param(name) else { return };
-        let Ok(value) = param.parse(option) else { return };
+        let Some((name, option)) = needs.iter().rev().max_by_key(|n| count(n)) else {
+            return;
+        };
+        let Some(param) = self.graph.params.param(name) else {
+            return;
+        };
+        let Ok(value) = param.parse(option) else {
+            return;
+        };
         ui.horizontal(|ui| {
             if self.old {
                 // A second click would go on from a choice that is on its way.
                 return drop(ui.weak("dimmed: without effect in the picture shown"));
             }
             ui.weak("dimmed: without effect unless");
-            if ui.small_button(format!("{name} = {option}")).on_hover_text(&param.help).clicked() {
+            if ui
+                .small_button(format!("{name} = {option}"))
+                .on_hover_text(&param.help)
+                .clicked()
+            {
                 edit::set(side, param, &value);
             }
         });
@@ -173,7 +228,11 @@ impl Shown<'_> {
             if idle.is_some() {
                 ui.multiply_opacity(0.55);
             }
-            let auto = self.found.and_then(|f| f.effective.get(&param.name)).filter(|_| !changed).copied();
+            let auto = self
+                .found
+                .and_then(|f| f.effective.get(&param.name))
+                .filter(|_| !changed)
+                .copied();
             let response = control(ui, param, title, &mut value, (changed, auto));
             response.on_hover_ui(|ui| help(ui, param, idle));
             if let Some(other) = self.other {
@@ -194,12 +253,19 @@ fn elsewhere(ui: &mut Ui, name: &str, title: &str, instead: &str, side: &mut Sid
     ui.horizontal(|ui| {
         ui.add_visible(false, egui::Button::new("↺").small().frame(false));
         ui.weak(title).on_hover_text(format!("{name}: {instead}"));
-        let graph = instead.strip_prefix("graph: \"").and_then(|rest| rest.split_once('"')).map(|(graph, _)| graph);
+        let graph = instead
+            .strip_prefix("graph: \"")
+            .and_then(|rest| rest.split_once('"'))
+            .map(|(graph, _)| graph);
         match graph {
             Some(graph) => {
                 let button = ui.small_button(format!("use {graph}"));
                 button.widget_info(|| {
-                    egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("use {graph} for {title}"))
+                    egui::WidgetInfo::labeled(
+                        egui::WidgetType::Button,
+                        true,
+                        format!("use {graph} for {title}"),
+                    )
                 });
                 if button.on_hover_text(instead).clicked() {
                     side.graph = graph.to_string();
@@ -222,11 +288,18 @@ fn groups(graph: &Graph) -> Vec<&str> {
 
 /// A text to be compared without regard to case, spaces and underscores.
 pub(super) fn folded(text: &str) -> String {
-    text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+    text.chars()
+        .filter(|c| c.is_alphanumeric())
+        .flat_map(char::to_lowercase)
+        .collect()
 }
 
 fn matches(graph: &Graph, param: &Param, needle: &str) -> bool {
-    let title = graph.pinned.iter().find(|p| p.0 == param.name).map_or("", |p| p.1.as_str());
+    let title = graph
+        .pinned
+        .iter()
+        .find(|p| p.0 == param.name)
+        .map_or("", |p| p.1.as_str());
     let texts = [param.name.as_str(), title, &param.group, &param.help];
     needle.is_empty() || texts.iter().any(|text| folded(text).contains(needle))
 }
@@ -241,7 +314,11 @@ fn help(ui: &mut Ui, param: &Param, idle: Option<&Reason>) {
     ui.strong(&param.name);
     if let Some(why) = idle {
         let why = &why.text;
-        let text = if why.starts_with("where") { format!("it counts {why}") } else { why.clone() };
+        let text = if why.starts_with("where") {
+            format!("it counts {why}")
+        } else {
+            why.clone()
+        };
         ui.colored_label(CHANGED, format!("changes nothing now: {text}"));
     }
     ui.label(&param.help);

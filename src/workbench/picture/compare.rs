@@ -65,7 +65,11 @@ pub fn difference(a: &Shown, b: &Shown, gain: u32) -> Option<Map> {
         .zip(a.bytes.par_chunks(rows).zip(b.bytes.par_chunks(rows)))
         .map(|(out, (a, b))| {
             let (mut sum, mut max, mut differing) = (0, 0, 0);
-            for ((out, a), b) in out.chunks_exact_mut(4).zip(a.chunks_exact(4)).zip(b.chunks_exact(4)) {
+            for ((out, a), b) in out
+                .chunks_exact_mut(4)
+                .zip(a.chunks_exact(4))
+                .zip(b.chunks_exact(4))
+            {
                 let mut any = false;
                 for c in 0..3 {
                     let d = a[c].abs_diff(b[c]);
@@ -98,13 +102,23 @@ pub fn joined(a: &Shown, b: &Shown, mode: Mode, split: f32, flipped: bool) -> Sh
     };
     match mode {
         Mode::Side if a.size[1] == b.size[1] => {
-            let bytes = (0..a.size[1]).flat_map(|y| [row(a, y), row(b, y)].concat()).collect();
-            Shown { size: [a.size[0] + b.size[0], a.size[1]], bytes: Arc::new(bytes) }
+            let bytes = (0..a.size[1])
+                .flat_map(|y| [row(a, y), row(b, y)].concat())
+                .collect();
+            Shown {
+                size: [a.size[0] + b.size[0], a.size[1]],
+                bytes: Arc::new(bytes),
+            }
         }
         Mode::Split if a.size == b.size => {
             let line = 4 * (split.clamp(0.0, 1.0) * a.size[0] as f32).round() as usize;
-            let bytes = (0..a.size[1]).flat_map(|y| [&row(a, y)[..line], &row(b, y)[line..]].concat()).collect();
-            Shown { size: a.size, bytes: Arc::new(bytes) }
+            let bytes = (0..a.size[1])
+                .flat_map(|y| [&row(a, y)[..line], &row(b, y)[line..]].concat())
+                .collect();
+            Shown {
+                size: a.size,
+                bytes: Arc::new(bytes),
+            }
         }
         Mode::Flip if flipped => b.clone(),
         _ => a.clone(),
@@ -118,7 +132,9 @@ pub fn flip(a: &Shown, b: &Shown) -> Option<Map> {
     }
     let linear = |s: &Shown| -> Vec<[f32; 3]> {
         let pixels = s.bytes.par_chunks_exact(4);
-        pixels.map(|p| [p[0], p[1], p[2]].map(|v| srgb_to_linear(f32::from(v) / 255.0))).collect()
+        pixels
+            .map(|p| [p[0], p[1], p[2]].map(|v| srgb_to_linear(f32::from(v) / 255.0)))
+            .collect()
     };
     let values = crate::metrics::flip::flip(&linear(b), &linear(a), a.size[0] as usize);
     let colour = |v: &f32| {
@@ -139,7 +155,10 @@ mod tests {
     use super::*;
 
     fn shown(pixels: &[[u8; 4]]) -> Shown {
-        Shown { size: [pixels.len() as u32, 1], bytes: Arc::new(pixels.concat()) }
+        Shown {
+            size: [pixels.len() as u32, 1],
+            bytes: Arc::new(pixels.concat()),
+        }
     }
 
     #[test]
@@ -155,10 +174,24 @@ mod tests {
     fn pictures_are_joined_as_they_are_compared() {
         let a = shown(&[[1; 4], [2; 4], [3; 4], [4; 4]]);
         let b = shown(&[[5; 4], [6; 4], [7; 4], [8; 4]]);
-        let first = |s: Shown| (s.size, s.bytes.iter().step_by(4).copied().collect::<Vec<u8>>());
-        assert_eq!(first(joined(&a, &b, Mode::Split, 0.25, false)), ([4, 1], vec![1, 6, 7, 8]));
-        assert_eq!(first(joined(&a, &b, Mode::Side, 0.5, false)), ([8, 1], vec![1, 2, 3, 4, 5, 6, 7, 8]));
-        assert_eq!(first(joined(&a, &b, Mode::Flip, 0.5, true)), ([4, 1], vec![5, 6, 7, 8]));
+        let first = |s: Shown| {
+            (
+                s.size,
+                s.bytes.iter().step_by(4).copied().collect::<Vec<u8>>(),
+            )
+        };
+        assert_eq!(
+            first(joined(&a, &b, Mode::Split, 0.25, false)),
+            ([4, 1], vec![1, 6, 7, 8])
+        );
+        assert_eq!(
+            first(joined(&a, &b, Mode::Side, 0.5, false)),
+            ([8, 1], vec![1, 2, 3, 4, 5, 6, 7, 8])
+        );
+        assert_eq!(
+            first(joined(&a, &b, Mode::Flip, 0.5, true)),
+            ([4, 1], vec![5, 6, 7, 8])
+        );
     }
 
     #[test]

@@ -15,7 +15,14 @@ pub enum Mode {
 }
 
 /// Moves the camera by what happened over the picture. `size` is the scene's diagonal, m; whether it moved.
-pub fn steer(ui: &Ui, response: &egui::Response, camera: &mut Camera, mode: Mode, size: f32, speed: f32) -> bool {
+pub fn steer(
+    ui: &Ui,
+    response: &egui::Response,
+    camera: &mut Camera,
+    mode: Mode,
+    size: f32,
+    speed: f32,
+) -> bool {
     let before = *camera;
     let delta = response.drag_delta();
     let height = response.rect.height().max(1.0);
@@ -67,13 +74,18 @@ fn keys(ui: &Ui, camera: &mut Camera, size: f32, speed: f32) {
     });
     if go != Vec3::ZERO {
         // The scene is crossed in about ten seconds.
-        shift(camera, go * seconds * 0.1 * size * speed * if fast { 4.0 } else { 1.0 });
+        shift(
+            camera,
+            go * seconds * 0.1 * size * speed * if fast { 4.0 } else { 1.0 },
+        );
         ui.ctx().request_repaint();
     }
 }
 
 fn direction(camera: &Camera) -> Vec3 {
-    (camera.target - camera.eye).try_normalize().unwrap_or(Vec3::NEG_Z)
+    (camera.target - camera.eye)
+        .try_normalize()
+        .unwrap_or(Vec3::NEG_Z)
 }
 
 /// To the right and up on the screen.
@@ -92,7 +104,11 @@ fn shift(camera: &mut Camera, by: Vec3) {
 fn turned(camera: &Camera, direction: Vec3, yaw: f32, pitch: f32) -> Vec3 {
     let up = camera.up.try_normalize().unwrap_or(Vec3::Y);
     let right = direction.cross(up).try_normalize().unwrap_or(Vec3::X);
-    let elevation = direction.normalize_or(Vec3::NEG_Z).dot(up).clamp(-1.0, 1.0).asin();
+    let elevation = direction
+        .normalize_or(Vec3::NEG_Z)
+        .dot(up)
+        .clamp(-1.0, 1.0)
+        .asin();
     let limit = 1.55;
     let pitch = (elevation + pitch).clamp(-limit, limit) - elevation;
     Quat::from_axis_angle(up, yaw) * (Quat::from_axis_angle(right, pitch) * direction)

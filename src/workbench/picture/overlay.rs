@@ -11,8 +11,12 @@ impl Workbench {
         if self.view.timers == Rows::None {
             return;
         }
-        let sides: Vec<Timers> = (0..2).map(|side| self.timers_of(painter.ctx(), side)).collect();
-        let longest = sides[0].longest().max(if b.is_some() { sides[1].longest() } else { 0.0 });
+        let sides: Vec<Timers> = (0..2)
+            .map(|side| self.timers_of(painter.ctx(), side))
+            .collect();
+        let longest = sides[0]
+            .longest()
+            .max(if b.is_some() { sides[1].longest() } else { 0.0 });
         let flipped = self.view.mode == Mode::Flip && self.view.flipped && b.is_some();
         draw(painter, a, false, &sides[usize::from(flipped)], longest);
         if let Some(b) = b.filter(|_| self.view.mode != Mode::Flip) {
@@ -23,11 +27,19 @@ impl Workbench {
     fn timers_of(&mut self, context: &egui::Context, side: usize) -> Timers {
         let both = self.desired.sides[1].is_some();
         let means = self.times.means(context, side, both);
-        let (Some(info), Some(picture)) = (&self.sides[side].info, &self.sides[side].picture) else {
+        let (Some(info), Some(picture)) = (&self.sides[side].info, &self.sides[side].picture)
+        else {
             return Timers::default();
         };
         let device = self.device.as_ref().map_or("", |d| d.name.as_str());
-        let mut timers = Timers::new(self.view.timers, &info.graph, &info.params, device, picture.size, &means.passes);
+        let mut timers = Timers::new(
+            self.view.timers,
+            &info.graph,
+            &info.params,
+            device,
+            picture.size,
+            &means.passes,
+        );
         timers.mark_skipped(&info.graph, &means.rests);
         timers.rows.push((means.outside.0.into(), means.outside.1));
         if self.desired.sides[1].is_some() {

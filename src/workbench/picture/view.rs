@@ -54,13 +54,20 @@ impl Default for View {
 /// What is around the picture.
 const GROUND: Color32 = Color32::from_gray(38);
 
-const WHOLE: Rect = Rect { min: Pos2::ZERO, max: Pos2 { x: 1.0, y: 1.0 } };
+const WHOLE: Rect = Rect {
+    min: Pos2::ZERO,
+    max: Pos2 { x: 1.0, y: 1.0 },
+};
 
 /// The largest rectangle of the picture's shape, never enlarged by less than whole pixels when it is small.
 pub fn fit(area: Rect, size: [u32; 2], scale: f32) -> Rect {
     let size = Vec2::new(size[0].max(1) as f32, size[1].max(1) as f32) / scale;
     let factor = (area.width() / size.x).min(area.height() / size.y);
-    let factor = if factor >= 1.0 { factor.floor().min(16.0) } else { factor };
+    let factor = if factor >= 1.0 {
+        factor.floor().min(16.0)
+    } else {
+        factor
+    };
     let place = Rect::from_center_size(area.center(), size * factor);
     // On whole pixels of the screen: texels of the picture must not fall between them.
     let whole = (place.min.to_vec2() * scale).round() / scale;
@@ -75,13 +82,23 @@ impl Workbench {
         }
         match self.view.mode {
             Mode::Flip => {
-                let name = if self.view.flipped { "showing B (press X)" } else { "showing A (press X)" };
+                let name = if self.view.flipped {
+                    "showing B (press X)"
+                } else {
+                    "showing A (press X)"
+                };
                 if ui.button(name).clicked() {
                     self.view.flipped = !self.view.flipped;
                 }
             }
             Mode::Difference => {
-                spin(ui, egui::DragValue::new(&mut self.view.gain).range(1..=255).prefix("x "), "gain");
+                spin(
+                    ui,
+                    egui::DragValue::new(&mut self.view.gain)
+                        .range(1..=255)
+                        .prefix("x "),
+                    "gain",
+                );
             }
             _ => {}
         }
@@ -89,7 +106,11 @@ impl Workbench {
             ui.label(text);
         }
         let about = "The pictures as they are compared here, into captures/";
-        if ui.small_button("save picture").on_hover_text(about).clicked() {
+        if ui
+            .small_button("save picture")
+            .on_hover_text(about)
+            .clicked()
+        {
             self.save_comparison();
         }
     }
@@ -101,7 +122,10 @@ impl Workbench {
         // Another ground than a picture's black: its edge is seen.
         painter.rect_filled(area, 0.0, GROUND);
         let scale = ui.ctx().pixels_per_point();
-        self.area = [(area.width() * scale) as u32, (area.height() * scale) as u32];
+        self.area = [
+            (area.width() * scale) as u32,
+            (area.height() * scale) as u32,
+        ];
         let Some(a) = self.sides[0].picture.as_ref().map(|p| p.size) else {
             painter.text(
                 area.center(),
@@ -117,19 +141,43 @@ impl Workbench {
         let fit = |area: Rect| zoom.place(fit(area, a, scale), a[0], scale);
         let mut shown = fit(area);
         let draw = |number: usize, rect: Rect, clip: Rect| {
-            painter.with_clip_rect(clip.intersect(area)).image(textures[number], rect, WHOLE, Color32::WHITE);
+            painter.with_clip_rect(clip.intersect(area)).image(
+                textures[number],
+                rect,
+                WHOLE,
+                Color32::WHITE,
+            );
         };
         let [a_differs, b_differs] = self.sides_in_words();
-        let names = [format!("A  {a_differs}"), format!("B  {b_differs}")].map(|n| n.trim_end().to_string());
+        let names = [format!("A  {a_differs}"), format!("B  {b_differs}")]
+            .map(|n| n.trim_end().to_string());
         match self.view.mode {
             _ if !both => draw(0, shown, area),
             Mode::Split => {
                 let x = shown.left() + shown.width() * self.view.split;
-                draw(0, shown, Rect::from_min_max(area.min, Pos2::new(x, area.max.y)));
-                draw(1, shown, Rect::from_min_max(Pos2::new(x, area.min.y), area.max));
+                draw(
+                    0,
+                    shown,
+                    Rect::from_min_max(area.min, Pos2::new(x, area.max.y)),
+                );
+                draw(
+                    1,
+                    shown,
+                    Rect::from_min_max(Pos2::new(x, area.min.y), area.max),
+                );
                 painter.vline(x, shown.y_range(), Stroke::new(1.5, Color32::WHITE));
-                badge(&painter, Pos2::new(x - 4.0, shown.top() + 4.0), Align2::RIGHT_TOP, &names[0]);
-                badge(&painter, Pos2::new(x + 4.0, shown.top() + 4.0), Align2::LEFT_TOP, &names[1]);
+                badge(
+                    &painter,
+                    Pos2::new(x - 4.0, shown.top() + 4.0),
+                    Align2::RIGHT_TOP,
+                    &names[0],
+                );
+                badge(
+                    &painter,
+                    Pos2::new(x + 4.0, shown.top() + 4.0),
+                    Align2::LEFT_TOP,
+                    &names[1],
+                );
             }
             Mode::Flip => {
                 draw(usize::from(self.view.flipped), shown, area);
@@ -145,11 +193,25 @@ impl Workbench {
                 shown = fit(left);
                 draw(0, shown, left);
                 draw(1, fit(right), right);
-                badge(&painter, corner(shown.intersect(left)), Align2::RIGHT_BOTTOM, &names[0]);
-                badge(&painter, corner(fit(right).intersect(right)), Align2::RIGHT_BOTTOM, &names[1]);
+                badge(
+                    &painter,
+                    corner(shown.intersect(left)),
+                    Align2::RIGHT_BOTTOM,
+                    &names[0],
+                );
+                badge(
+                    &painter,
+                    corner(fit(right).intersect(right)),
+                    Align2::RIGHT_BOTTOM,
+                    &names[1],
+                );
             }
             Mode::Difference | Mode::Perceived => {
-                if self.comparison.as_ref().is_some_and(|(mode, _)| *mode == self.view.mode) {
+                if self
+                    .comparison
+                    .as_ref()
+                    .is_some_and(|(mode, _)| *mode == self.view.mode)
+                {
                     draw(COMPARISON, shown, area);
                 } else {
                     draw(0, shown, area);
@@ -157,7 +219,12 @@ impl Workbench {
             }
         }
         if self.stale() {
-            painter.rect_stroke(shown, 0.0, Stroke::new(2.0, Color32::from_rgb(220, 80, 60)), egui::StrokeKind::Inside);
+            painter.rect_stroke(
+                shown,
+                0.0,
+                Stroke::new(2.0, Color32::from_rgb(220, 80, 60)),
+                egui::StrokeKind::Inside,
+            );
         }
         if let Some(what) = self.pending(ui.ctx()) {
             let foot = area.intersect(shown).center_bottom() - Vec2::new(0.0, 6.0);
@@ -167,15 +234,27 @@ impl Workbench {
             Mode::Side => fit(area.split_left_right_at_fraction(0.5).1),
             _ => shown,
         };
-        self.timers(&painter, shown.intersect(area), both.then_some(b.intersect(area)));
+        self.timers(
+            &painter,
+            shown.intersect(area),
+            both.then_some(b.intersect(area)),
+        );
         self.view.place = Some(shown);
         self.read_out(&painter, &response, shown, both);
         self.mouse(ui, &response, shown, a, both);
     }
 
     /// The pixel under the pointer: of B where B is shown.
-    fn read_out(&self, painter: &egui::Painter, response: &egui::Response, shown: Rect, both: bool) {
-        let Some(at) = response.hover_pos().filter(|p| shown.contains(*p)) else { return };
+    fn read_out(
+        &self,
+        painter: &egui::Painter,
+        response: &egui::Response,
+        shown: Rect,
+        both: bool,
+    ) {
+        let Some(at) = response.hover_pos().filter(|p| shown.contains(*p)) else {
+            return;
+        };
         let line = shown.left() + shown.width() * self.view.split;
         let second = both
             && match self.view.mode {
@@ -183,13 +262,26 @@ impl Workbench {
                 Mode::Flip => self.view.flipped,
                 _ => false,
             };
-        let Some(picture) = &self.sides[usize::from(second)].picture else { return };
+        let Some(picture) = &self.sides[usize::from(second)].picture else {
+            return;
+        };
         if let Some(text) = pixel_text(picture, pixel_at(shown, picture.size, at)) {
-            foot(painter, response.rect, format!("{} {text}", ["A", "B"][usize::from(second)]));
+            foot(
+                painter,
+                response.rect,
+                format!("{} {text}", ["A", "B"][usize::from(second)]),
+            );
         }
     }
 
-    fn mouse(&mut self, ui: &Ui, response: &egui::Response, shown: Rect, size: [u32; 2], both: bool) {
+    fn mouse(
+        &mut self,
+        ui: &Ui,
+        response: &egui::Response,
+        shown: Rect,
+        size: [u32; 2],
+        both: bool,
+    ) {
         let splitting = both && self.view.mode == Mode::Split;
         let line = shown.left() + shown.width() * self.view.split;
         let pointer = response.interact_pointer_pos().or(response.hover_pos());
@@ -214,13 +306,22 @@ impl Workbench {
             return;
         }
         if response.clicked()
-            && let Some(p) = response.interact_pointer_pos().filter(|p| shown.contains(*p))
+            && let Some(p) = response
+                .interact_pointer_pos()
+                .filter(|p| shown.contains(*p))
         {
             self.point_at(Some(pixel_at(shown, size, p)));
             self.show_tables();
         }
         if let Some(camera) = &mut self.desired.camera {
-            motion::steer(ui, response, camera, self.view.steering, self.diagonal, self.view.speed);
+            motion::steer(
+                ui,
+                response,
+                camera,
+                self.view.steering,
+                self.diagonal,
+                self.view.speed,
+            );
         }
     }
 }
@@ -231,7 +332,8 @@ fn corner(picture: Rect) -> Pos2 {
 }
 
 fn badge(painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str) {
-    let galley = painter.layout_no_wrap(text.to_string(), FontId::proportional(12.0), Color32::WHITE);
+    let galley =
+        painter.layout_no_wrap(text.to_string(), FontId::proportional(12.0), Color32::WHITE);
     let rect = anchor.anchor_size(at, galley.size() + Vec2::new(8.0, 2.0));
     painter.rect_filled(rect, 3.0, Color32::from_black_alpha(160));
     painter.galley(rect.min + Vec2::new(4.0, 1.0), galley, Color32::WHITE);

@@ -15,7 +15,10 @@ pub struct Zoom {
 
 impl Default for Zoom {
     fn default() -> Zoom {
-        Zoom { factor: 1.0, centre: Vec2::splat(0.5) }
+        Zoom {
+            factor: 1.0,
+            centre: Vec2::splat(0.5),
+        }
     }
 }
 
@@ -32,7 +35,8 @@ impl Zoom {
         }
         let texel = fitting.width() * scale / width.max(1) as f32 * self.factor;
         let texel = if texel >= 2.0 { texel.round() } else { texel };
-        let size = fitting.size() * (texel * width.max(1) as f32 / (fitting.width() * scale).max(1.0));
+        let size =
+            fitting.size() * (texel * width.max(1) as f32 / (fitting.width() * scale).max(1.0));
         let min = fitting.center() - size * self.centre;
         Rect::from_min_size((min.to_vec2() * scale).round().to_pos2() / scale, size)
     }
@@ -44,7 +48,11 @@ impl Zoom {
             *self = Zoom::default();
             return true;
         }
-        let factor = if response.hovered() { ui.input(egui::InputState::zoom_delta) } else { 1.0 };
+        let factor = if response.hovered() {
+            ui.input(egui::InputState::zoom_delta)
+        } else {
+            1.0
+        };
         if let Some(at) = response.hover_pos().filter(|_| factor != 1.0) {
             let under = (at - shown.min) / shown.size();
             let before = self.factor;
@@ -75,8 +83,15 @@ pub fn pixel_text(picture: &PictureReport, at: Vec2) -> Option<String> {
     let (x, y) = (at.x as usize, at.y as usize);
     let first = 4 * (y * width as usize + x);
     let rgb = picture.bytes.as_ref()?.get(first..first + 3)?;
-    let linear = rgb.iter().map(|v| format!("{:.3}", linear(*v))).collect::<Vec<_>>().join(" ");
-    Some(format!("{x}, {y}   {} {} {}   {linear}", rgb[0], rgb[1], rgb[2]))
+    let linear = rgb
+        .iter()
+        .map(|v| format!("{:.3}", linear(*v)))
+        .collect::<Vec<_>>()
+        .join(" ");
+    Some(format!(
+        "{x}, {y}   {} {} {}   {linear}",
+        rgb[0], rgb[1], rgb[2]
+    ))
 }
 
 /// The light that the screen gives for a value, 0 to 1 (sRGB, IEC 61966-2-1).
@@ -87,7 +102,8 @@ fn linear(value: u8) -> f32 {
 /// A line of text on dark ground at the lower left of `area`.
 pub fn foot(painter: &egui::Painter, area: Rect, text: String) {
     let galley = painter.layout_no_wrap(text, FontId::monospace(11.0), Color32::WHITE);
-    let rect = Align2::LEFT_BOTTOM.anchor_size(area.left_bottom(), galley.size() + Vec2::splat(6.0));
+    let rect =
+        Align2::LEFT_BOTTOM.anchor_size(area.left_bottom(), galley.size() + Vec2::splat(6.0));
     painter.rect_filled(rect, 2.0, Color32::from_black_alpha(170));
     painter.galley(rect.min + Vec2::splat(3.0), galley, Color32::WHITE);
 }
@@ -106,7 +122,10 @@ mod tests {
     fn zoomed_texels_have_whole_sizes_and_the_middle_stays() {
         let fitting = Rect::from_min_size(Pos2::new(10.0, 20.0), Vec2::new(320.0, 240.0));
         assert_eq!(Zoom::default().place(fitting, 160, 1.0), fitting);
-        let zoom = Zoom { factor: 1.6, ..Zoom::default() };
+        let zoom = Zoom {
+            factor: 1.6,
+            ..Zoom::default()
+        };
         let place = zoom.place(fitting, 160, 1.0);
         assert_eq!((place.width(), place.height()), (480.0, 360.0));
         assert_eq!(place.center(), fitting.center());
@@ -133,7 +152,10 @@ mod tests {
             cpu_ms: 0.0,
         };
         let text = pixel_text(&picture, Vec2::new(1.5, 0.5));
-        assert_eq!(text.as_deref(), Some("1, 0   255 188 0   1.000 0.503 0.000"));
+        assert_eq!(
+            text.as_deref(),
+            Some("1, 0   255 188 0   1.000 0.503 0.000")
+        );
         assert_eq!(pixel_text(&picture, Vec2::new(2.0, 0.0)), None);
     }
 }

@@ -19,7 +19,10 @@ pub struct Bookmarks {
 impl Workbench {
     /// Buttons for the kept cameras of the scene, and a field to keep this one.
     pub(crate) fn bookmark_rows(&mut self, ui: &mut Ui) {
-        let folder = self.root.join("captures/cameras").join(short(&self.desired.scene));
+        let folder = self
+            .root
+            .join("captures/cameras")
+            .join(short(&self.desired.scene));
         let known = self.bookmarks.known.take().filter(|k| k.0 == folder);
         let files = known.map_or_else(|| ron_files(&folder), |k| k.1);
         let (mut go, mut remove) = (None, None);
@@ -40,13 +43,20 @@ impl Workbench {
         }
         let mut keep = false;
         ui.horizontal(|ui| {
-            let field = egui::TextEdit::singleline(&mut self.bookmarks.name).hint_text("name").desired_width(100.0);
+            let field = egui::TextEdit::singleline(&mut self.bookmarks.name)
+                .hint_text("name")
+                .desired_width(100.0);
             let field = ui.add(field);
-            field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "camera name"));
+            field.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "camera name")
+            });
             let enter = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             let named = !self.bookmarks.name.trim().is_empty();
             let button = ui.add_enabled(named, egui::Button::new("keep camera").small());
-            keep = button.on_hover_text("Keeps this camera in captures/cameras").clicked() || enter && named;
+            keep = button
+                .on_hover_text("Keeps this camera in captures/cameras")
+                .clicked()
+                || enter && named;
             ui.weak(&self.bookmarks.said);
         });
         self.bookmarks.known = Some((folder.clone(), files));
@@ -71,7 +81,9 @@ impl Workbench {
 
     fn keep_camera(&mut self, folder: &std::path::Path) -> Result<String, LabError> {
         let name = checked_name(self.bookmarks.name.trim())?;
-        let Some(camera) = &self.desired.camera else { return Err(LabError::Request("there is no camera yet".into())) };
+        let Some(camera) = &self.desired.camera else {
+            return Err(LabError::Request("there is no camera yet".into()));
+        };
         let mut path = CameraPath::default();
         camera_path::insert(&mut path, Key::new(0.0, &PlacedCamera::from(camera)))?;
         camera_path::write(&path, &folder.join(format!("{name}.ron")), false)?;
@@ -84,11 +96,16 @@ impl Workbench {
         match CameraPath::read(file) {
             Ok(path) => {
                 if let Some(key) = path.keys.first() {
-                    let placed = PlacedCamera { up: key.up, ..PlacedCamera::new(key.eye, key.target, key.fov_y) };
+                    let placed = PlacedCamera {
+                        up: key.up,
+                        ..PlacedCamera::new(key.eye, key.target, key.fov_y)
+                    };
                     self.desired.camera = Some(Viewpoint::placed(&placed, scene).camera);
                 }
             }
-            Err(errors) => self.bookmarks.said = errors.first().map_or(String::new(), ToString::to_string),
+            Err(errors) => {
+                self.bookmarks.said = errors.first().map_or(String::new(), ToString::to_string)
+            }
         }
     }
 }

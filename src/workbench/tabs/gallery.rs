@@ -86,8 +86,12 @@ impl Workbench {
         }
         ui.horizontal(|ui| {
             let edit = egui::TextEdit::singleline(&mut self.gallery.name).desired_width(140.0);
-            let field = ui.add(edit).on_hover_text("Written to configs/NAME.ron: only what differs from the defaults");
-            field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "experiment name"));
+            let field = ui
+                .add(edit)
+                .on_hover_text("Written to configs/NAME.ron: only what differs from the defaults");
+            field.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "experiment name")
+            });
             if field.changed() {
                 (self.gallery.taken, self.gallery.saved) = (None, None);
             }
@@ -103,9 +107,17 @@ impl Workbench {
             }
         });
         if let Some(taken) = &self.gallery.taken {
-            ui.weak(format!("configs/{taken}.ron exists; replacing keeps its comments"));
+            ui.weak(format!(
+                "configs/{taken}.ron exists; replacing keeps its comments"
+            ));
         }
-        said(ui, self.gallery.saved.as_ref().filter(|_| self.gallery.taken.is_none()));
+        said(
+            ui,
+            self.gallery
+                .saved
+                .as_ref()
+                .filter(|_| self.gallery.taken.is_none()),
+        );
     }
 
     /// Saves what side A (or B, when the panel shows it) says. An existing file is only replaced when asked for.
@@ -122,10 +134,15 @@ impl Workbench {
                 self.status = format!("saved {}", path.display());
                 self.gallery.saved = Some((true, self.status.clone()));
                 self.written = Some(path.clone());
-                self.event("saved", serde_json::json!({ "path": path.display().to_string() }));
+                self.event(
+                    "saved",
+                    serde_json::json!({ "path": path.display().to_string() }),
+                );
             }
             Err(e) => {
-                let taken = checked_name(&self.gallery.name).ok().filter(|n| self.experiment_path(n).exists());
+                let taken = checked_name(&self.gallery.name)
+                    .ok()
+                    .filter(|n| self.experiment_path(n).exists());
                 self.gallery.taken = taken.filter(|_| !replace);
                 self.status = e.to_string();
                 self.gallery.saved = Some((false, self.status.clone()));
@@ -143,12 +160,22 @@ impl Workbench {
         if let Some(missing) = self.missing_scene() {
             return Err(LabError::Request(format!("not saved: {missing}")));
         }
-        let side = self.desired.sides[self.panel_side].as_ref().or(self.desired.sides[0].as_ref());
-        let info = self.sides[self.panel_side].info.as_ref().or(self.sides[0].info.as_ref());
+        let side = self.desired.sides[self.panel_side]
+            .as_ref()
+            .or(self.desired.sides[0].as_ref());
+        let info = self.sides[self.panel_side]
+            .info
+            .as_ref()
+            .or(self.sides[0].info.as_ref());
         let (Some(side), Some(info)) = (side, info) else {
-            return Err(LabError::Request("there is nothing to save yet: no graph has been built".into()));
+            return Err(LabError::Request(
+                "there is nothing to save yet: no graph has been built".into(),
+            ));
         };
-        let time = self.sides[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
+        let time = self.sides[0]
+            .picture
+            .as_ref()
+            .map_or(self.desired.clock.at, |p| p.time);
         let side = save::without_pointer(side, info.graph.pointer.as_deref());
         let experiment = save::experiment(&self.desired, &side, &name, time, self.scene.as_deref());
         let path = self.experiment_path(&name);
@@ -167,19 +194,24 @@ impl Workbench {
             }
         });
         said(ui, self.gallery.captured.as_ref());
-        let Some(info) = self.sides[0].info.clone() else { return };
-        egui::CollapsingHeader::new(format!("resources ({})", self.gallery.resources.len())).show(ui, |ui| {
-            ui.weak("kept as EXR beside the picture");
-            for (name, _) in &info.graph.textures {
-                let mut chosen = self.gallery.resources.contains(name);
-                if ui.checkbox(&mut chosen, name).changed() {
-                    self.gallery.resources.retain(|r| r != name);
-                    if chosen {
-                        self.gallery.resources.push(name.clone());
+        let Some(info) = self.sides[0].info.clone() else {
+            return;
+        };
+        egui::CollapsingHeader::new(format!("resources ({})", self.gallery.resources.len())).show(
+            ui,
+            |ui| {
+                ui.weak("kept as EXR beside the picture");
+                for (name, _) in &info.graph.textures {
+                    let mut chosen = self.gallery.resources.contains(name);
+                    if ui.checkbox(&mut chosen, name).changed() {
+                        self.gallery.resources.retain(|r| r != name);
+                        if chosen {
+                            self.gallery.resources.push(name.clone());
+                        }
                     }
                 }
-            }
-        });
+            },
+        );
     }
 
     /// Captures the side that the panel shows.
@@ -188,10 +220,12 @@ impl Workbench {
             "" => self.name.clone(),
             name => name.to_string(),
         };
-        let checked = checked_name(&name).map_err(LabError::from).and_then(|name| match self.missing_scene() {
-            Some(missing) => Err(LabError::Request(format!("not captured: {missing}"))),
-            None => Ok(name),
-        });
+        let checked = checked_name(&name)
+            .map_err(LabError::from)
+            .and_then(|name| match self.missing_scene() {
+                Some(missing) => Err(LabError::Request(format!("not captured: {missing}"))),
+                None => Ok(name),
+            });
         match checked {
             Ok(name) => {
                 self.status = format!("capturing {name}");
@@ -209,7 +243,10 @@ impl Workbench {
             Err(e) => {
                 self.status = e.to_string();
                 self.gallery.captured = Some((false, self.status.clone()));
-                self.event("captured", serde_json::json!({ "ok": false, "text": self.status }));
+                self.event(
+                    "captured",
+                    serde_json::json!({ "ok": false, "text": self.status }),
+                );
             }
         }
     }
@@ -217,7 +254,10 @@ impl Workbench {
     fn gallery_rows(&mut self, ui: &mut Ui) {
         let folder = self.root.join("captures");
         while let Ok((path, image)) = self.gallery.made.1.try_recv() {
-            let handle = image.map(|i| ui.ctx().load_texture(path.to_string_lossy(), i, egui::TextureOptions::LINEAR));
+            let handle = image.map(|i| {
+                ui.ctx()
+                    .load_texture(path.to_string_lossy(), i, egui::TextureOptions::LINEAR)
+            });
             self.gallery.thumbnails.insert(path, handle);
         }
         while let Ok(text) = self.gallery.replays.1.try_recv() {
@@ -227,22 +267,28 @@ impl Workbench {
         if ui.small_button("refresh").clicked() {
             self.gallery.forget();
         }
-        let captures = self.gallery.captures.get_or_insert_with(|| capture::list(&folder)).clone();
+        let captures = self
+            .gallery
+            .captures
+            .get_or_insert_with(|| capture::list(&folder))
+            .clone();
         if captures.is_empty() {
             ui.weak("none yet");
         }
         if !self.gallery.replayed.is_empty() {
             ui.label(&self.gallery.replayed);
         }
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            for summary in captures {
-                ui.horizontal(|ui| {
-                    self.thumbnail(ui, &summary);
-                    ui.vertical(|ui| self.capture_row(ui, &summary));
-                });
-                ui.separator();
-            }
-        });
+        egui::ScrollArea::vertical()
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                for summary in captures {
+                    ui.horizontal(|ui| {
+                        self.thumbnail(ui, &summary);
+                        ui.vertical(|ui| self.capture_row(ui, &summary));
+                    });
+                    ui.separator();
+                }
+            });
     }
 
     fn thumbnail(&mut self, ui: &mut Ui, summary: &Summary) {
@@ -259,7 +305,8 @@ impl Workbench {
             Some(None) => drop(ui.allocate_space(size)),
             None => {
                 self.gallery.thumbnails.insert(path.clone(), None);
-                let (path, out, wake) = (path.clone(), self.gallery.made.0.clone(), self.wake.clone());
+                let (path, out, wake) =
+                    (path.clone(), self.gallery.made.0.clone(), self.wake.clone());
                 std::thread::spawn(move || {
                     let image = small(&path);
                     let _ = out.send((path, image));
@@ -274,21 +321,40 @@ impl Workbench {
         ui.label(&summary.name);
         match &summary.manifest {
             Ok(m) => {
-                ui.weak(format!("{} {}x{}", short(&m.scene.name), m.size[0], m.size[1]))
-                    .on_hover_text(format!("{}\n{} ({})\nconelab {}", m.when, m.device, m.driver, m.version));
+                ui.weak(format!(
+                    "{} {}x{}",
+                    short(&m.scene.name),
+                    m.size[0],
+                    m.size[1]
+                ))
+                .on_hover_text(format!(
+                    "{}\n{} ({})\nconelab {}",
+                    m.when, m.device, m.driver, m.version
+                ));
                 ui.horizontal(|ui| {
                     let name = &summary.name;
-                    let load = ui.small_button("load").on_hover_text("Its settings, with the shaders as they are now");
+                    let load = ui
+                        .small_button("load")
+                        .on_hover_text("Its settings, with the shaders as they are now");
                     load.widget_info(|| {
-                        egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("load {name}"))
+                        egui::WidgetInfo::labeled(
+                            egui::WidgetType::Button,
+                            true,
+                            format!("load {name}"),
+                        )
                     });
                     if load.clicked() {
                         self.load_capture(summary, &m.graph);
                     }
-                    let replay =
-                        ui.small_button("replay").on_hover_text("Render it again from its own sources and compare");
+                    let replay = ui
+                        .small_button("replay")
+                        .on_hover_text("Render it again from its own sources and compare");
                     replay.widget_info(|| {
-                        egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("replay {name}"))
+                        egui::WidgetInfo::labeled(
+                            egui::WidgetType::Button,
+                            true,
+                            format!("replay {name}"),
+                        )
                     });
                     if replay.clicked() {
                         self.replay(&summary.folder);
@@ -296,7 +362,8 @@ impl Workbench {
                 });
             }
             Err(why) => {
-                ui.colored_label(egui::Color32::from_rgb(255, 110, 90), "damaged").on_hover_text(why);
+                ui.colored_label(egui::Color32::from_rgb(255, 110, 90), "damaged")
+                    .on_hover_text(why);
             }
         }
     }
@@ -319,7 +386,11 @@ impl Workbench {
     /// Replays by the program's own command, in a process of its own.
     fn replay(&mut self, folder: &Path) {
         self.gallery.replayed = "replaying".into();
-        let (folder, out, wake) = (folder.to_path_buf(), self.gallery.replays.0.clone(), self.wake.clone());
+        let (folder, out, wake) = (
+            folder.to_path_buf(),
+            self.gallery.replays.0.clone(),
+            self.wake.clone(),
+        );
         let device = self.device.as_ref().map(|d| d.name.clone());
         std::thread::spawn(move || {
             let run = || -> std::io::Result<String> {
@@ -354,7 +425,11 @@ fn small(path: &Path) -> Option<ColorImage> {
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(1 << 30);
     reader.limits(limits);
-    let image = reader.decode().ok()?.thumbnail(THUMBNAIL, THUMBNAIL).to_rgba8();
+    let image = reader
+        .decode()
+        .ok()?
+        .thumbnail(THUMBNAIL, THUMBNAIL)
+        .to_rgba8();
     let size = [image.width() as usize, image.height() as usize];
     Some(ColorImage::from_rgba_unmultiplied(size, &image))
 }

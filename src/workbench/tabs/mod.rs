@@ -28,7 +28,11 @@ pub(crate) struct Tab {
 
 impl Tab {
     const fn new(title: &'static str, show: Show) -> Tab {
-        Tab { title, show, middle: |workbench, ui, textures| workbench.picture(ui, textures) }
+        Tab {
+            title,
+            show,
+            middle: |workbench, ui, textures| workbench.picture(ui, textures),
+        }
     }
 
     pub(crate) fn is(self, other: Tab) -> bool {
@@ -37,5 +41,13 @@ impl Tab {
 }
 
 /// The tabs, in order.
-pub(crate) const TABS: [Tab; 8] =
-    [surroundings::TAB, times::TAB, chart::TAB, nodes::TAB, inspector::TAB, tables::TAB, paths::TAB, gallery::TAB];
+pub(crate) const TABS: [Tab; 8] = [
+    surroundings::TAB,
+    times::TAB,
+    chart::TAB,
+    nodes::TAB,
+    inspector::TAB,
+    tables::TAB,
+    paths::TAB,
+    gallery::TAB,
+];

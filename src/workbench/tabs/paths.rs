@@ -65,17 +65,30 @@ impl Workbench {
                     }
                 }
             });
-            let edit = ui.add(egui::TextEdit::singleline(&mut self.paths.name).desired_width(100.0));
-            edit.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "path name"));
+            let edit =
+                ui.add(egui::TextEdit::singleline(&mut self.paths.name).desired_width(100.0));
+            edit.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "path name")
+            });
             if edit.changed() {
                 self.paths.taken = false;
             }
-            let text = if self.paths.taken { "replace it" } else { "save path" };
-            if ui.add_enabled(!self.paths.path.keys.is_empty(), egui::Button::new(text)).clicked() {
+            let text = if self.paths.taken {
+                "replace it"
+            } else {
+                "save path"
+            };
+            if ui
+                .add_enabled(!self.paths.path.keys.is_empty(), egui::Button::new(text))
+                .clicked()
+            {
                 match self.save_path(self.paths.taken) {
                     Ok(file) => {
                         self.status = format!("saved {}", file.display());
-                        self.event("saved", serde_json::json!({ "path": file.display().to_string() }));
+                        self.event(
+                            "saved",
+                            serde_json::json!({ "path": file.display().to_string() }),
+                        );
                         self.paths.taken = false;
                     }
                     Err(e) => {
@@ -88,7 +101,10 @@ impl Workbench {
     }
 
     fn path_file(&self) -> Result<PathBuf, LabError> {
-        Ok(self.root.join("configs/paths").join(format!("{}.ron", checked_name(&self.paths.name)?)))
+        Ok(self
+            .root
+            .join("configs/paths")
+            .join(format!("{}.ron", checked_name(&self.paths.name)?)))
     }
 
     fn save_path(&self, replace: bool) -> Result<PathBuf, LabError> {
@@ -100,7 +116,9 @@ impl Workbench {
     fn path_keys(&mut self, ui: &mut Ui) {
         let now = self.sides[0].picture.as_ref().map_or(0.0, |p| p.time);
         ui.horizontal(|ui| {
-            let add = ui.button("add key").on_hover_text("The camera as it stands now, a second after the last key");
+            let add = ui
+                .button("add key")
+                .on_hover_text("The camera as it stands now, a second after the last key");
             if let Some(camera) = self.desired.camera.as_ref().filter(|_| add.clicked()) {
                 let time = self.paths.path.keys.last().map_or(0.0, |k| k.time + 1.0);
                 let key = Key::new(time, &PlacedCamera::from(camera));
@@ -117,25 +135,27 @@ impl Workbench {
         let mut remove = None;
         let mut moved = None;
         let mut go = None;
-        egui::ScrollArea::vertical().max_height(240.0).show(ui, |ui| {
-            for (i, key) in self.paths.path.keys.iter().enumerate() {
-                ui.horizontal(|ui| {
-                    let mut time = key.time;
-                    let field = DragValue::new(&mut time).speed(0.05).suffix(" s");
-                    if spin(ui, field, &format!("time of key {}", i + 1)).changed() {
-                        moved = Some((i, time));
-                    }
-                    let (x, y, z) = key.eye;
-                    ui.weak(format!("{x:.2} {y:.2} {z:.2}"));
-                    if ui.small_button("go").clicked() {
-                        go = Some(*key);
-                    }
-                    if ui.small_button("remove").clicked() {
-                        remove = Some(i);
-                    }
-                });
-            }
-        });
+        egui::ScrollArea::vertical()
+            .max_height(240.0)
+            .show(ui, |ui| {
+                for (i, key) in self.paths.path.keys.iter().enumerate() {
+                    ui.horizontal(|ui| {
+                        let mut time = key.time;
+                        let field = DragValue::new(&mut time).speed(0.05).suffix(" s");
+                        if spin(ui, field, &format!("time of key {}", i + 1)).changed() {
+                            moved = Some((i, time));
+                        }
+                        let (x, y, z) = key.eye;
+                        ui.weak(format!("{x:.2} {y:.2} {z:.2}"));
+                        if ui.small_button("go").clicked() {
+                            go = Some(*key);
+                        }
+                        if ui.small_button("remove").clicked() {
+                            remove = Some(i);
+                        }
+                    });
+                }
+            });
         if let Some((i, time)) = moved
             && let Err(e) = camera_path::move_key(&mut self.paths.path, i, time)
         {
@@ -146,9 +166,13 @@ impl Workbench {
             self.paths.follow &= !self.paths.path.keys.is_empty();
         }
         if let (Some(key), Some(scene)) = (go, &self.scene) {
-            let placed = PlacedCamera { up: key.up, ..PlacedCamera::new(key.eye, key.target, key.fov_y) };
+            let placed = PlacedCamera {
+                up: key.up,
+                ..PlacedCamera::new(key.eye, key.target, key.fov_y)
+            };
             self.desired.camera = Some(Viewpoint::placed(&placed, scene).camera);
         }
-        self.desired.path = (self.paths.follow && !self.paths.path.keys.is_empty()).then(|| self.paths.path.clone());
+        self.desired.path = (self.paths.follow && !self.paths.path.keys.is_empty())
+            .then(|| self.paths.path.clone());
     }
 }

@@ -25,7 +25,13 @@ pub struct Sequence {
 
 impl Default for Sequence {
     fn default() -> Self {
-        Sequence { frames: 60, rate: 30.0, folder: "captures/sequence".into(), running: None, said: None }
+        Sequence {
+            frames: 60,
+            rate: 30.0,
+            folder: "captures/sequence".into(),
+            running: None,
+            said: None,
+        }
     }
 }
 
@@ -42,7 +48,12 @@ struct Running {
 impl Running {
     /// Looks how many frames there are.
     fn count(&mut self) {
-        while self.done < self.frames && self.folder.join(format!("frame-{:05}.png", self.done)).is_file() {
+        while self.done < self.frames
+            && self
+                .folder
+                .join(format!("frame-{:05}.png", self.done))
+                .is_file()
+        {
             self.done += 1;
         }
     }
@@ -50,7 +61,11 @@ impl Running {
     fn cancel(&mut self) {
         self.cancelled = true;
         // One that has ended meanwhile needs no end.
-        let _ = self.child.lock().unwrap_or_else(PoisonError::into_inner).kill();
+        let _ = self
+            .child
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .kill();
     }
 }
 
@@ -64,9 +79,13 @@ impl Workbench {
     /// Takes in the end of a sequence.
     pub(crate) fn poll_sequence(&mut self) {
         let sequence = &mut self.paths.sequence;
-        let Some(running) = &mut sequence.running else { return };
+        let Some(running) = &mut sequence.running else {
+            return;
+        };
         running.count();
-        let Ok((ok, text)) = running.ended.try_recv() else { return };
+        let Ok((ok, text)) = running.ended.try_recv() else {
+            return;
+        };
         let text = match running.cancelled {
             true => format!(
                 "cancelled after {} of {} frames, which stay in {}",
@@ -87,14 +106,23 @@ impl Workbench {
         let mut render = false;
         ui.add_enabled_ui(idle, |ui| {
             ui.horizontal(|ui| {
-                let frames = DragValue::new(&mut sequence.frames).range(1..=100_000).suffix(" frames");
+                let frames = DragValue::new(&mut sequence.frames)
+                    .range(1..=100_000)
+                    .suffix(" frames");
                 crate::workbench::panel::control::spin(ui, frames, "frames of the sequence");
-                let rate = DragValue::new(&mut sequence.rate).range(1.0..=240.0).suffix(" a second");
+                let rate = DragValue::new(&mut sequence.rate)
+                    .range(1.0..=240.0)
+                    .suffix(" a second");
                 crate::workbench::panel::control::spin(ui, rate, "frames a second");
             });
             ui.horizontal(|ui| {
-                let field = ui.add(egui::TextEdit::singleline(&mut sequence.folder).desired_width(160.0));
-                crate::workbench::panel::control::named(&field, egui::WidgetType::TextEdit, "folder of the sequence");
+                let field =
+                    ui.add(egui::TextEdit::singleline(&mut sequence.folder).desired_width(160.0));
+                crate::workbench::panel::control::named(
+                    &field,
+                    egui::WidgetType::TextEdit,
+                    "folder of the sequence",
+                );
                 field.on_hover_text("Folder for frame-00000.png and so on");
                 render = ui.button("render").clicked();
             });
@@ -104,9 +132,17 @@ impl Workbench {
                 let part = running.done as f32 / running.frames.max(1) as f32;
                 let text = format!("{} of {} frames", running.done, running.frames);
                 ui.add(ProgressBar::new(part).desired_width(180.0).text(text));
-                let name = if running.cancelled { "stopping" } else { "cancel" };
+                let name = if running.cancelled {
+                    "stopping"
+                } else {
+                    "cancel"
+                };
                 let cancel = egui::Button::new(name).small();
-                if ui.add_enabled(!running.cancelled, cancel).on_hover_text("The frames so far stay").clicked() {
+                if ui
+                    .add_enabled(!running.cancelled, cancel)
+                    .on_hover_text("The frames so far stay")
+                    .clicked()
+                {
                     running.cancel();
                 }
             });
@@ -114,7 +150,14 @@ impl Workbench {
         } else if let Some((ok, text)) = &sequence.said {
             match ok {
                 true => ui.weak(text),
-                false => ui.colored_label(if text.starts_with("cancelled") { AMBER } else { RED }, text),
+                false => ui.colored_label(
+                    if text.starts_with("cancelled") {
+                        AMBER
+                    } else {
+                        RED
+                    },
+                    text,
+                ),
             };
         }
         if render {
@@ -133,22 +176,39 @@ impl Workbench {
         let (Some(side), Some(info)) = (&self.desired.sides[0], &self.sides[0].info) else {
             return Err(LabError::Request("no graph has been built yet".into()));
         };
-        let failed = |e: std::io::Error| LabError::Request(format!("cannot write the sequence's settings: {e}"));
-        let folder = tempfile::Builder::new().prefix("conelab-sequence-").tempdir().map_err(failed)?;
+        let failed = |e: std::io::Error| {
+            LabError::Request(format!("cannot write the sequence's settings: {e}"))
+        };
+        let folder = tempfile::Builder::new()
+            .prefix("conelab-sequence-")
+            .tempdir()
+            .map_err(failed)?;
         let side = save::without_pointer(side, info.graph.pointer.as_deref());
-        let mut experiment = save::experiment(&self.desired, &side, "sequence", 0.0, self.scene.as_deref());
+        let mut experiment =
+            save::experiment(&self.desired, &side, "sequence", 0.0, self.scene.as_deref());
         let scene = PathBuf::from(&experiment.scene);
         if scene.is_file() {
-            experiment.scene = scene.canonicalize().map_err(failed)?.to_string_lossy().into_owned();
+            experiment.scene = scene
+                .canonicalize()
+                .map_err(failed)?
+                .to_string_lossy()
+                .into_owned();
         }
         let file = folder.path().join("sequence.ron");
         crate::experiment::write(&experiment, &info.graph.params, &file, false)?;
         let Sequence { frames, rate, .. } = self.paths.sequence;
         let to = self.root.join(&self.paths.sequence.folder);
         let mut command = Command::new(std::env::current_exe().map_err(failed)?);
-        command.current_dir(&self.root).env("CONELAB_HOME", &self.root);
+        command
+            .current_dir(&self.root)
+            .env("CONELAB_HOME", &self.root);
         command.arg("render").arg(&file).arg("--sequence").arg(&to);
-        command.args(["--frames", &frames.to_string(), "--step", &(1.0 / rate).to_string()]);
+        command.args([
+            "--frames",
+            &frames.to_string(),
+            "--step",
+            &(1.0 / rate).to_string(),
+        ]);
         if !self.paths.path.keys.is_empty() {
             let path = folder.path().join("path.ron");
             camera_path::write(&self.paths.path, &path, false)?;
@@ -160,7 +220,14 @@ impl Workbench {
         // Frames of another sequence are not counted: the command refuses their folder.
         let done = if has_frames(&to) { frames } else { 0 };
         let (child, ended) = start(command, folder, self.wake.clone())?;
-        self.paths.sequence.running = Some(Running { child, ended, folder: to, done, frames, cancelled: false });
+        self.paths.sequence.running = Some(Running {
+            child,
+            ended,
+            folder: to,
+            done,
+            frames,
+            cancelled: false,
+        });
         self.event("sequence begun", serde_json::json!({ "frames": frames }));
         Ok(())
     }
@@ -179,8 +246,12 @@ fn start(
     wake: Arc<dyn Fn() + Send + Sync>,
 ) -> Result<Started, LabError> {
     let cannot = |e: std::io::Error| LabError::Request(format!("cannot render the sequence: {e}"));
-    let mut child =
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().map_err(cannot)?;
+    let mut child = command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(cannot)?;
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
     let child = Arc::new(Mutex::new(child));
     let (out, ended) = unbounded();
@@ -194,7 +265,10 @@ fn start(
         drop(folder);
         let ok = status.is_ok_and(|s| s.success());
         let text = if ok { said } else { errors };
-        let _ = out.send((ok, text.trim().lines().last().unwrap_or_default().to_string()));
+        let _ = out.send((
+            ok,
+            text.trim().lines().last().unwrap_or_default().to_string(),
+        ));
         wake();
     });
     Ok((child, ended))

@@ -17,8 +17,15 @@ const RGB: [&str; 3] = ["red", "green", "blue"];
 
 fn metres(ui: &mut Ui, label: &str, v: &mut Vec3) {
     ui.horizontal(|ui| {
-        for (x, axis) in [&mut v.x, &mut v.y, &mut v.z].into_iter().zip(["x", "y", "z"]) {
-            spin(ui, DragValue::new(x).speed(0.02).max_decimals(3), &format!("{label} {axis}"));
+        for (x, axis) in [&mut v.x, &mut v.y, &mut v.z]
+            .into_iter()
+            .zip(["x", "y", "z"])
+        {
+            spin(
+                ui,
+                DragValue::new(x).speed(0.02).max_decimals(3),
+                &format!("{label} {axis}"),
+            );
         }
         ui.label(label);
     });
@@ -27,26 +34,32 @@ fn metres(ui: &mut Ui, label: &str, v: &mut Vec3) {
 impl Workbench {
     /// The section.
     pub(crate) fn surroundings(&mut self, ui: &mut Ui) {
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            let warnings = self.scene_warnings();
-            if !warnings.is_empty() {
-                let title = RichText::new(format!("Warnings ({})", warnings.len())).color(AMBER);
-                egui::CollapsingHeader::new(title).id_salt("warnings").default_open(true).show(ui, |ui| {
-                    for warning in &warnings {
-                        ui.label(warning);
-                    }
-                });
+        egui::ScrollArea::vertical()
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                let warnings = self.scene_warnings();
+                if !warnings.is_empty() {
+                    let title =
+                        RichText::new(format!("Warnings ({})", warnings.len())).color(AMBER);
+                    egui::CollapsingHeader::new(title)
+                        .id_salt("warnings")
+                        .default_open(true)
+                        .show(ui, |ui| {
+                            for warning in &warnings {
+                                ui.label(warning);
+                            }
+                        });
+                    ui.separator();
+                }
+                ui.strong("Camera");
+                self.camera(ui);
                 ui.separator();
-            }
-            ui.strong("Camera");
-            self.camera(ui);
-            ui.separator();
-            ui.strong("Clock");
-            self.time(ui);
-            ui.separator();
-            ui.strong("Lights and sky");
-            self.lights(ui);
-        });
+                ui.strong("Clock");
+                self.time(ui);
+                ui.separator();
+                ui.strong("Lights and sky");
+                self.lights(ui);
+            });
     }
 
     fn camera(&mut self, ui: &mut Ui) {
@@ -55,10 +68,16 @@ impl Workbench {
                 .on_hover_text("Drag turns around the target, the wheel comes nearer");
             ui.selectable_value(&mut self.view.steering, motion::Mode::Fly, "fly")
                 .on_hover_text("Drag looks around, W A S D Q E move");
-            let speed = DragValue::new(&mut self.view.speed).range(0.01..=100.0).speed(0.05).prefix("speed x ");
+            let speed = DragValue::new(&mut self.view.speed)
+                .range(0.01..=100.0)
+                .speed(0.05)
+                .prefix("speed x ");
             spin(ui, speed, "speed");
         });
-        let names: Vec<String> = self.scene.as_ref().map_or(Vec::new(), |s| s.cameras.keys().cloned().collect());
+        let names: Vec<String> = self
+            .scene
+            .as_ref()
+            .map_or(Vec::new(), |s| s.cameras.keys().cloned().collect());
         if let Some(scene) = self.scene.clone() {
             ui.horizontal_wrapped(|ui| {
                 ui.label("views:");
@@ -76,7 +95,11 @@ impl Workbench {
         if let Some(camera) = &mut self.desired.camera {
             metres(ui, "eye, m", &mut camera.eye);
             metres(ui, "target, m", &mut camera.target);
-            ui.add(egui::Slider::new(&mut camera.fov_y, 5.0..=150.0).suffix(" deg").text("field of view"));
+            ui.add(
+                egui::Slider::new(&mut camera.fov_y, 5.0..=150.0)
+                    .suffix(" deg")
+                    .text("field of view"),
+            );
         }
     }
 
@@ -95,7 +118,10 @@ impl Workbench {
                 clock.at = 0.0;
                 clock.jumps += 1;
             }
-            ui.label(format!("{:.3} s", self.sides[0].picture.as_ref().map_or(0.0, |p| p.time)));
+            ui.label(format!(
+                "{:.3} s",
+                self.sides[0].picture.as_ref().map_or(0.0, |p| p.time)
+            ));
         });
         ui.horizontal(|ui| {
             let mut fixed = clock.step.is_some();
@@ -106,28 +132,51 @@ impl Workbench {
                 (false, _) => None,
             };
             if let Some(step) = &mut clock.step {
-                spin(ui, DragValue::new(step).range(0.0001..=10.0).speed(0.001).suffix(" s"), "step");
+                spin(
+                    ui,
+                    DragValue::new(step)
+                        .range(0.0001..=10.0)
+                        .speed(0.001)
+                        .suffix(" s"),
+                    "step",
+                );
             }
         });
     }
 
     fn lights(&mut self, ui: &mut Ui) {
-        let Some(scene) = self.scene.clone() else { return };
+        let Some(scene) = self.scene.clone() else {
+            return;
+        };
         let own = LightState::of(&scene);
         let mut now = self.desired.lights.clone().unwrap_or_else(|| own.clone());
-        let LightState { lights, sky, rotation } = &mut now;
+        let LightState {
+            lights,
+            sky,
+            rotation,
+        } = &mut now;
         ui.horizontal(|ui| {
             for (x, c) in [&mut sky.x, &mut sky.y, &mut sky.z].into_iter().zip(RGB) {
-                spin(ui, DragValue::new(x).range(0.0..=1e6).speed(0.01), &format!("sky {c}"));
+                spin(
+                    ui,
+                    DragValue::new(x).range(0.0..=1e6).speed(0.01),
+                    &format!("sky {c}"),
+                );
             }
             match scene.environment {
-                None => ui.label("sky radiance").on_hover_text("Linear RGB, W/(m² sr)"),
+                None => ui
+                    .label("sky radiance")
+                    .on_hover_text("Linear RGB, W/(m² sr)"),
                 Some(_) => ui.label("times the sky's picture"),
             };
         });
         if let Some(environment) = &scene.environment {
             ui.label(format!("picture: {}", environment.name()));
-            ui.add(egui::Slider::new(rotation, 0.0..=360.0).suffix(" deg").text("rotation"));
+            ui.add(
+                egui::Slider::new(rotation, 0.0..=360.0)
+                    .suffix(" deg")
+                    .text("rotation"),
+            );
             intensity(ui, sky);
         }
         if self.picture_file(ui) {
@@ -135,11 +184,21 @@ impl Workbench {
             return;
         }
         for (i, light) in lights.iter_mut().enumerate() {
-            let name = if light.name.is_empty() { format!("light {}", i + 1) } else { light.name.clone() };
-            egui::CollapsingHeader::new(name).id_salt(("light", i)).default_open(i < 3).show(ui, |ui| one(ui, light));
+            let name = if light.name.is_empty() {
+                format!("light {}", i + 1)
+            } else {
+                light.name.clone()
+            };
+            egui::CollapsingHeader::new(name)
+                .id_salt(("light", i))
+                .default_open(i < 3)
+                .show(ui, |ui| one(ui, light));
         }
         let differs = now != own;
-        if ui.add_enabled(differs, egui::Button::new("reset lights")).clicked() {
+        if ui
+            .add_enabled(differs, egui::Button::new("reset lights"))
+            .clicked()
+        {
             self.desired.lights = None;
         } else {
             self.desired.lights = differs.then_some(now);
@@ -149,11 +208,19 @@ impl Workbench {
     /// A field for the file of another sky. Returns true if one was requested; the light must not be edited then.
     fn picture_file(&mut self, ui: &mut Ui) -> bool {
         ui.horizontal(|ui| {
-            let field = egui::TextEdit::singleline(&mut self.view.picture).hint_text("sky.hdr or sky.exr");
+            let field =
+                egui::TextEdit::singleline(&mut self.view.picture).hint_text("sky.hdr or sky.exr");
             let field = ui.add(field.desired_width(180.0));
-            crate::workbench::panel::control::named(&field, egui::WidgetType::TextEdit, "picture of the sky");
+            crate::workbench::panel::control::named(
+                &field,
+                egui::WidgetType::TextEdit,
+                "picture of the sky",
+            );
             let done = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-            let clicked = ui.button("load").on_hover_text("A picture of the sky; empty: the scene's own").clicked();
+            let clicked = ui
+                .button("load")
+                .on_hover_text("A picture of the sky; empty: the scene's own")
+                .clicked();
             let asked = (done || clicked) && self.view.picture.trim() != self.desired.environment;
             if asked {
                 if self.missing_scene().is_none() {
@@ -173,18 +240,33 @@ fn intensity(ui: &mut Ui, sky: &mut Vec3) {
     let before = sky.max_element();
     let mut now = before;
     ui.horizontal(|ui| {
-        spin(ui, DragValue::new(&mut now).range(0.0..=1e6).speed(0.01), "sky intensity");
+        spin(
+            ui,
+            DragValue::new(&mut now).range(0.0..=1e6).speed(0.01),
+            "sky intensity",
+        );
         ui.label("intensity");
     });
     if now != before {
-        *sky = if before > 0.0 { *sky * (now / before) } else { Vec3::splat(now) };
+        *sky = if before > 0.0 {
+            *sky * (now / before)
+        } else {
+            Vec3::splat(now)
+        };
     }
 }
 
 fn one(ui: &mut Ui, light: &mut Light) {
     ui.horizontal(|ui| {
-        for (x, c) in [&mut light.color.x, &mut light.color.y, &mut light.color.z].into_iter().zip(RGB) {
-            spin(ui, DragValue::new(x).range(0.0..=1e7).speed(0.02), &format!("light {c}"));
+        for (x, c) in [&mut light.color.x, &mut light.color.y, &mut light.color.z]
+            .into_iter()
+            .zip(RGB)
+        {
+            spin(
+                ui,
+                DragValue::new(x).range(0.0..=1e7).speed(0.02),
+                &format!("light {c}"),
+            );
         }
         ui.label(match light.kind {
             LightKind::Directional => "irradiance",
@@ -198,10 +280,21 @@ fn one(ui: &mut Ui, light: &mut Light) {
     if !matches!(light.kind, LightKind::Point) {
         // As angles: easier to set than three numbers of a unit vector.
         let d = light.direction;
-        let (mut azimuth, mut elevation) = (d.z.atan2(d.x).to_degrees(), (-d.y).clamp(-1.0, 1.0).asin().to_degrees());
+        let (mut azimuth, mut elevation) = (
+            d.z.atan2(d.x).to_degrees(),
+            (-d.y).clamp(-1.0, 1.0).asin().to_degrees(),
+        );
         let before = (azimuth, elevation);
-        ui.add(egui::Slider::new(&mut azimuth, -180.0..=180.0).suffix(" deg").text("azimuth"));
-        ui.add(egui::Slider::new(&mut elevation, -90.0..=90.0).suffix(" deg").text("elevation"));
+        ui.add(
+            egui::Slider::new(&mut azimuth, -180.0..=180.0)
+                .suffix(" deg")
+                .text("azimuth"),
+        );
+        ui.add(
+            egui::Slider::new(&mut elevation, -90.0..=90.0)
+                .suffix(" deg")
+                .text("elevation"),
+        );
         if (azimuth, elevation) != before {
             let (a, e) = (azimuth.to_radians(), elevation.to_radians());
             light.direction = Vec3::new(e.cos() * a.cos(), -e.sin(), e.cos() * a.sin());
@@ -210,8 +303,16 @@ fn one(ui: &mut Ui, light: &mut Light) {
     if let LightKind::Spot { inner, outer } = &mut light.kind {
         let (mut i, mut o) = (inner.to_degrees(), outer.to_degrees());
         let before = (i, o);
-        ui.add(egui::Slider::new(&mut i, 0.0..=89.0).suffix(" deg").text("inner"));
-        ui.add(egui::Slider::new(&mut o, 1.0..=89.0).suffix(" deg").text("outer"));
+        ui.add(
+            egui::Slider::new(&mut i, 0.0..=89.0)
+                .suffix(" deg")
+                .text("inner"),
+        );
+        ui.add(
+            egui::Slider::new(&mut o, 1.0..=89.0)
+                .suffix(" deg")
+                .text("outer"),
+        );
         if (i, o) != before {
             (*inner, *outer) = (i.min(o).to_radians(), o.to_radians());
         }

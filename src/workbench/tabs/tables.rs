@@ -40,14 +40,29 @@ struct Rows {
 impl Tables {
     /// Takes in the content of a table's buffer.
     pub fn note(&mut self, number: usize, table: Table, bytes: Vec<u8>) {
-        self.came = Some(Came { number, table, bytes });
+        self.came = Some(Came {
+            number,
+            table,
+            bytes,
+        });
     }
 
     /// Decodes what came, when it is of the table shown.
     fn refresh(&mut self) {
-        if let Some(Came { number, table, bytes }) = self.came.take().filter(|c| c.number == self.chosen) {
+        if let Some(Came {
+            number,
+            table,
+            bytes,
+        }) = self.came.take().filter(|c| c.number == self.chosen)
+        {
             let cells = decode(&table, &bytes);
-            self.rows = Some(Rows { number, table, kinds: kinds(&cells), shown: Vec::new(), cells });
+            self.rows = Some(Rows {
+                number,
+                table,
+                kinds: kinds(&cells),
+                shown: Vec::new(),
+                cells,
+            });
             self.sift();
         }
         if self.rows.as_ref().is_some_and(|r| r.number != self.chosen) {
@@ -83,7 +98,12 @@ fn kinds(cells: &[Vec<Cell>]) -> Vec<String> {
 /// Numbers of the rows whose first column has that value.
 fn sift(cells: &[Vec<Cell>], filter: Option<&str>) -> Vec<usize> {
     let fits = |row: &[Cell]| filter.is_none_or(|f| first(row).as_deref() == Some(f));
-    cells.iter().enumerate().filter(|(_, row)| fits(row)).map(|(i, _)| i).collect()
+    cells
+        .iter()
+        .enumerate()
+        .filter(|(_, row)| fits(row))
+        .map(|(i, _)| i)
+        .collect()
 }
 
 /// The rows as CSV; a vector has a column a component. Numbers are written so that they read back exactly.
@@ -91,9 +111,11 @@ fn csv<'r>(table: &Table, rows: impl Iterator<Item = &'r Vec<Cell>>) -> std::io:
     let mut out = csv::Writer::from_writer(Vec::new());
     let parts = |c: &Column| match c.kind {
         CellKind::Uint | CellKind::Int | CellKind::Float => vec![heading(c)],
-        kind => {
-            ["x", "y", "z", "w"].iter().take(kind.bytes() / 4).map(|p| format!("{}.{p}{}", c.name, unit(c))).collect()
-        }
+        kind => ["x", "y", "z", "w"]
+            .iter()
+            .take(kind.bytes() / 4)
+            .map(|p| format!("{}.{p}{}", c.name, unit(c)))
+            .collect(),
     };
     out.write_record(table.columns.iter().flat_map(parts))?;
     for row in rows {
@@ -109,7 +131,11 @@ fn csv<'r>(table: &Table, rows: impl Iterator<Item = &'r Vec<Cell>>) -> std::io:
 }
 
 fn unit(column: &Column) -> String {
-    if column.unit.is_empty() { String::new() } else { format!(" ({})", column.unit) }
+    if column.unit.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", column.unit)
+    }
 }
 
 fn heading(column: &Column) -> String {
@@ -149,14 +175,20 @@ impl Workbench {
             ui.weak("The graph has no tables");
             return;
         };
-        egui::ComboBox::from_id_salt("table").selected_text(&table.title).show_ui(ui, |ui| {
-            for (i, t) in list.iter().map(|t| &t.value).enumerate() {
-                if ui.selectable_label(i == self.tables.chosen, &t.title).on_hover_text(&t.help).clicked() {
-                    (self.tables.chosen, self.tables.filter) = (i, None);
-                    table = t;
+        egui::ComboBox::from_id_salt("table")
+            .selected_text(&table.title)
+            .show_ui(ui, |ui| {
+                for (i, t) in list.iter().map(|t| &t.value).enumerate() {
+                    if ui
+                        .selectable_label(i == self.tables.chosen, &t.title)
+                        .on_hover_text(&t.help)
+                        .clicked()
+                    {
+                        (self.tables.chosen, self.tables.filter) = (i, None);
+                        table = t;
+                    }
                 }
-            }
-        });
+            });
         self.desired.table = Some(self.tables.chosen);
         ui.weak(&table.help);
         self.tables.refresh();
@@ -170,28 +202,44 @@ impl Workbench {
             });
             return;
         }
-        egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| self.table_body(ui, &table.help));
+        egui::ScrollArea::horizontal()
+            .auto_shrink(false)
+            .show(ui, |ui| self.table_body(ui, &table.help));
     }
 
     fn table_bar(&mut self, ui: &mut Ui, title: &str) {
         let mut export = false;
         ui.horizontal(|ui| {
-            let Some(rows) = &self.tables.rows else { return };
+            let Some(rows) = &self.tables.rows else {
+                return;
+            };
             let name = rows.table.columns.first().map_or("", |c| c.name.as_str());
             let mut filter = self.tables.filter.clone();
             if rows.kinds.len() > 1 || filter.is_some() {
-                let text = filter.as_ref().map_or(format!("every {name}"), |f| format!("{name} {f}"));
-                egui::ComboBox::from_id_salt("filter").selected_text(text).width(90.0).show_ui(ui, |ui| {
-                    ui.selectable_value(&mut filter, None, format!("every {name}"));
-                    for kind in &rows.kinds {
-                        ui.selectable_value(&mut filter, Some(kind.clone()), format!("{name} {kind}"));
-                    }
-                });
+                let text = filter
+                    .as_ref()
+                    .map_or(format!("every {name}"), |f| format!("{name} {f}"));
+                egui::ComboBox::from_id_salt("filter")
+                    .selected_text(text)
+                    .width(90.0)
+                    .show_ui(ui, |ui| {
+                        ui.selectable_value(&mut filter, None, format!("every {name}"));
+                        for kind in &rows.kinds {
+                            ui.selectable_value(
+                                &mut filter,
+                                Some(kind.clone()),
+                                format!("{name} {kind}"),
+                            );
+                        }
+                    });
             }
             ui.label(format!("{} of {} rows", rows.shown.len(), rows.cells.len()));
             let button = egui::Button::new("CSV").small();
             let about = "The rows shown, into captures/";
-            export = ui.add_enabled(!rows.shown.is_empty(), button).on_hover_text(about).clicked();
+            export = ui
+                .add_enabled(!rows.shown.is_empty(), button)
+                .on_hover_text(about)
+                .clicked();
             if filter != self.tables.filter {
                 self.tables.filter = filter;
                 self.tables.sift();
@@ -200,18 +248,29 @@ impl Workbench {
         if !export {
             return;
         }
-        let Some(rows) = &self.tables.rows else { return };
-        let bytes = csv(&rows.table, rows.shown.iter().filter_map(|i| rows.cells.get(*i)));
+        let Some(rows) = &self.tables.rows else {
+            return;
+        };
+        let bytes = csv(
+            &rows.table,
+            rows.shown.iter().filter_map(|i| rows.cells.get(*i)),
+        );
         let name = format!("table-{}-{title}", self.name);
         self.export(&name, "csv", bytes);
     }
 
     fn table_body(&mut self, ui: &mut Ui, help: &str) {
-        let Some(rows) = &self.tables.rows else { return };
+        let Some(rows) = &self.tables.rows else {
+            return;
+        };
         let mut builder = TableBuilder::new(ui).striped(true).auto_shrink(false);
         for c in &rows.table.columns {
             let heading = 8.0 * heading(c).len() as f32 + 4.0;
-            builder = builder.column(Width::initial(width(c.kind).max(heading)).resizable(true).clip(true));
+            builder = builder.column(
+                Width::initial(width(c.kind).max(heading))
+                    .resizable(true)
+                    .clip(true),
+            );
         }
         let head = |mut row: egui_extras::TableRow<'_, '_>| {
             for c in &rows.table.columns {
@@ -224,7 +283,10 @@ impl Workbench {
         };
         builder.header(20.0, head).body(|body| {
             body.rows(16.0, rows.shown.len(), |mut row| {
-                let Some(cells) = rows.shown.get(row.index()).and_then(|i| rows.cells.get(*i)) else { return };
+                let Some(cells) = rows.shown.get(row.index()).and_then(|i| rows.cells.get(*i))
+                else {
+                    return;
+                };
                 for cell in cells {
                     row.col(|ui| {
                         let rect = ui.max_rect();
@@ -252,10 +314,27 @@ mod tests {
     use super::*;
 
     fn table() -> (Table, Vec<Vec<Cell>>) {
-        let column = |name: &str, at, kind, unit: &str| Column { name: name.into(), at, kind, unit: unit.into() };
-        let columns = vec![column("cone", 0, CellKind::Uint, ""), column("at", 4, CellKind::Vec3, "m")];
-        let table = Table { rows: 0, start: 4, stride: 16, columns };
-        let rows: [(u32, [f32; 3]); 3] = [(2, [0.1, 1.0, 2.0]), (0, [3.0, 1e-7, -4.0]), (2, [f32::NAN, 0.0, 7.0])];
+        let column = |name: &str, at, kind, unit: &str| Column {
+            name: name.into(),
+            at,
+            kind,
+            unit: unit.into(),
+        };
+        let columns = vec![
+            column("cone", 0, CellKind::Uint, ""),
+            column("at", 4, CellKind::Vec3, "m"),
+        ];
+        let table = Table {
+            rows: 0,
+            start: 4,
+            stride: 16,
+            columns,
+        };
+        let rows: [(u32, [f32; 3]); 3] = [
+            (2, [0.1, 1.0, 2.0]),
+            (0, [3.0, 1e-7, -4.0]),
+            (2, [f32::NAN, 0.0, 7.0]),
+        ];
         let mut bytes = 3_u32.to_ne_bytes().to_vec();
         for (cone, at) in rows {
             bytes.extend(cone.to_ne_bytes());
@@ -269,9 +348,15 @@ mod tests {
     fn a_filter_keeps_the_rows_of_a_cone() {
         let (table, cells) = table();
         assert_eq!(kinds(&cells), ["2", "0"]);
-        assert_eq!((sift(&cells, None), sift(&cells, Some("2"))), (vec![0, 1, 2], vec![0, 2]));
+        assert_eq!(
+            (sift(&cells, None), sift(&cells, Some("2"))),
+            (vec![0, 1, 2], vec![0, 2])
+        );
         assert!(sift(&cells, Some("9")).is_empty());
-        let mut tables = Tables { filter: Some("2".into()), ..Tables::default() };
+        let mut tables = Tables {
+            filter: Some("2".into()),
+            ..Tables::default()
+        };
         // Bytes of a table that is not shown are dropped.
         tables.note(4, table, vec![0; 4]);
         tables.refresh();
@@ -283,9 +368,15 @@ mod tests {
         let (table, cells) = table();
         let bytes = csv(&table, cells.iter()).unwrap();
         let mut reader = csv::Reader::from_reader(bytes.as_slice());
-        assert_eq!(reader.headers().unwrap(), vec!["cone", "at.x (m)", "at.y (m)", "at.z (m)"]);
+        assert_eq!(
+            reader.headers().unwrap(),
+            vec!["cone", "at.x (m)", "at.y (m)", "at.z (m)"]
+        );
         let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
         assert_eq!(rows[1][2].parse::<f32>().unwrap(), 1e-7);
-        assert_eq!((&rows[0][0], rows[0][1].parse::<f32>().unwrap(), &rows[2][1]), ("2", 0.1, "NaN"));
+        assert_eq!(
+            (&rows[0][0], rows[0][1].parse::<f32>().unwrap(), &rows[2][1]),
+            ("2", 0.1, "NaN")
+        );
     }
 }

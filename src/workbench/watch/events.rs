@@ -40,12 +40,19 @@ fn seen(event: Event) -> Vec<Seen> {
     if matches!(event.kind, EventKind::Access(_)) {
         return Vec::new();
     }
-    event.paths.into_iter().filter(|p| is_source(p)).map(Seen::Path).collect()
+    event
+        .paths
+        .into_iter()
+        .filter(|p| is_source(p))
+        .map(Seen::Path)
+        .collect()
 }
 
 /// Not an editor's own file: hidden, or a backup, or a swap.
 fn is_source(path: &Path) -> bool {
-    let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let name = path
+        .file_name()
+        .map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     !(name.is_empty()
         || name.starts_with('.')
         || name.ends_with('~')
@@ -61,12 +68,16 @@ mod tests {
 
     #[test]
     fn a_full_queue_is_a_change_of_everything() {
-        assert_eq!(seen(Event::new(EventKind::Other).set_flag(Flag::Rescan)), [Seen::Lost]);
+        assert_eq!(
+            seen(Event::new(EventKind::Other).set_flag(Flag::Rescan)),
+            [Seen::Lost]
+        );
     }
 
     #[test]
     fn files_that_editors_leave_beside_are_no_change() {
-        let event = |name: &str| Event::new(EventKind::Create(CreateKind::File)).add_path(name.into());
+        let event =
+            |name: &str| Event::new(EventKind::Create(CreateKind::File)).add_path(name.into());
         for name in [".a.frag.swp", "a.frag~", "4913", "a.tmp"] {
             assert_eq!(seen(event(name)), [], "{name}");
         }

@@ -29,7 +29,11 @@ pub struct Changed {
 impl Changed {
     /// All but experiments: a reload by hand.
     pub fn all() -> Changed {
-        Changed { method: true, scene: true, experiments: Vec::new() }
+        Changed {
+            method: true,
+            scene: true,
+            experiments: Vec::new(),
+        }
     }
 }
 
@@ -71,7 +75,10 @@ impl Watch {
         let always_poll = std::env::var("CONELAB_WATCH").is_ok_and(|v| v == "poll");
         let notified = notify::recommended_watcher(handler(send.clone(), wake.clone()));
         let mut watch = Watch {
-            trouble: notified.as_ref().err().map(|e| format!("changes of files are looked for every second: {e}")),
+            trouble: notified
+                .as_ref()
+                .err()
+                .map(|e| format!("changes of files are looked for every second: {e}")),
             notified: notified.ok(),
             polled: None,
             send,
@@ -86,7 +93,13 @@ impl Watch {
             waiting: Vec::new(),
             always_poll,
         };
-        let roots: Vec<PathBuf> = watch.method.iter().chain([&watch.configs]).filter(|f| f.is_dir()).cloned().collect();
+        let roots: Vec<PathBuf> = watch
+            .method
+            .iter()
+            .chain([&watch.configs])
+            .filter(|f| f.is_dir())
+            .cloned()
+            .collect();
         for folder in roots {
             watch.add(&folder, RecursiveMode::Recursive);
         }
@@ -103,21 +116,33 @@ impl Watch {
     /// Watches the file of the open experiment, wherever it is.
     pub fn experiment(&mut self, file: &Path) {
         let path = absolute(file);
-        self.experiment = if path.starts_with(&self.configs) { BTreeSet::new() } else { places(&path) };
+        self.experiment = if path.starts_with(&self.configs) {
+            BTreeSet::new()
+        } else {
+            places(&path)
+        };
         self.update();
     }
 
     /// The files behind links in the method's folders.
     fn follow_links(&mut self) {
-        self.linked =
-            self.method.iter().flat_map(|folder| links_below(folder)).flat_map(|link| places(&link)).collect();
+        self.linked = self
+            .method
+            .iter()
+            .flat_map(|folder| links_below(folder))
+            .flat_map(|link| places(&link))
+            .collect();
         self.update();
     }
 
     /// Watches the folders of all single files, and no others.
     fn update(&mut self) {
         let roots = [&self.method[0], &self.method[1], &self.configs];
-        let files = self.linked.iter().chain(&self.scene).chain(&self.experiment);
+        let files = self
+            .linked
+            .iter()
+            .chain(&self.scene)
+            .chain(&self.experiment);
         let wanted: BTreeSet<PathBuf> = files
             .filter_map(|f| f.parent())
             .filter(|f| f.is_dir() && !roots.iter().any(|r| f.starts_with(r)))
@@ -149,14 +174,22 @@ impl Watch {
                 }
                 // For example: no more watches are left (fs.inotify.max_user_watches).
                 Err(e) => {
-                    self.trouble = Some(format!("changes in {} are looked for every second: {e}", folder.display()));
+                    self.trouble = Some(format!(
+                        "changes in {} are looked for every second: {e}",
+                        folder.display()
+                    ));
                 }
             }
         }
         if self.polled.is_none() {
             match Poll::start(handler(self.send.clone(), self.wake.clone())) {
                 Ok(poll) => self.polled = Some(poll),
-                Err(e) => self.trouble = Some(format!("changes in {} are not seen: {e}; F5 reloads", folder.display())),
+                Err(e) => {
+                    self.trouble = Some(format!(
+                        "changes in {} are not seen: {e}; F5 reloads",
+                        folder.display()
+                    ))
+                }
             }
         }
         if let Some(poll) = &self.polled {
@@ -168,7 +201,9 @@ impl Watch {
     /// The changes, once nothing followed for a moment; else the time until the next look.
     pub fn take(&mut self) -> Result<Changed, Option<Duration>> {
         self.waiting.extend(self.events.try_iter());
-        let Some(last) = self.waiting.iter().map(|w| w.0).max() else { return Err(None) };
+        let Some(last) = self.waiting.iter().map(|w| w.0).max() else {
+            return Err(None);
+        };
         if let Some(wait) = QUIET.checked_sub(last.elapsed()) {
             return Err(Some(wait));
         }
@@ -176,7 +211,12 @@ impl Watch {
         for (_, seen) in std::mem::take(&mut self.waiting) {
             match seen {
                 // The system's queue was full: anything may have changed.
-                Seen::Lost => changed = Changed { experiments: changed.experiments, ..Changed::all() },
+                Seen::Lost => {
+                    changed = Changed {
+                        experiments: changed.experiments,
+                        ..Changed::all()
+                    }
+                }
                 Seen::Path(path) => self.sort(path, &mut changed),
             }
         }
@@ -187,7 +227,8 @@ impl Watch {
     }
 
     fn sort(&self, path: PathBuf, changed: &mut Changed) {
-        changed.method |= self.method.iter().any(|m| path.starts_with(m)) || self.linked.contains(&path);
+        changed.method |=
+            self.method.iter().any(|m| path.starts_with(m)) || self.linked.contains(&path);
         changed.scene |= self.scene.contains(&path);
         let is_experiment = path.parent() == Some(&self.configs) || self.experiment.contains(&path);
         if is_experiment && !changed.experiments.contains(&path) {
@@ -203,9 +244,15 @@ impl Watch {
     /// A list of all that is watched, a folder a line.
     pub fn summary(&self) -> String {
         let files = self.scene.len();
-        let mut lines = vec![format!("{files} files of the scene, and graphs, shaders and experiments, in:")];
+        let mut lines = vec![format!(
+            "{files} files of the scene, and graphs, shaders and experiments, in:"
+        )];
         let line = |(folder, polled): (&PathBuf, &bool)| {
-            format!("{}{}", folder.display(), if *polled { " (every second)" } else { "" })
+            format!(
+                "{}{}",
+                folder.display(),
+                if *polled { " (every second)" } else { "" }
+            )
         };
         lines.extend(self.folders.iter().map(line));
         lines.push("F5 reads all of them again.".into());

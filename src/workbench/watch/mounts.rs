@@ -4,16 +4,19 @@ use std::path::Path;
 
 /// Kinds of network and host file systems. `fuse.` stands for all of its kinds (sshfs, rclone, ...).
 const SILENT: [&str; 16] = [
-    "9p", "afs", "beegfs", "ceph", "cifs", "drvfs", "fuse.", "gpfs", "lustre", "ncpfs", "nfs", "nfs4", "prl_fs",
-    "smb3", "vboxsf", "virtiofs",
+    "9p", "afs", "beegfs", "ceph", "cifs", "drvfs", "fuse.", "gpfs", "lustre", "ncpfs", "nfs",
+    "nfs4", "prl_fs", "smb3", "vboxsf", "virtiofs",
 ];
 
 /// Whether a folder is on such a file system.
 pub(super) fn is_silent(folder: &Path) -> bool {
     // Other systems than Linux have no such table, and send events for network folders.
     let table = std::fs::read_to_string("/proc/self/mountinfo").unwrap_or_default();
-    kind_of(folder, &table)
-        .is_some_and(|kind| SILENT.iter().any(|s| kind == *s || s.ends_with('.') && kind.starts_with(s)))
+    kind_of(folder, &table).is_some_and(|kind| {
+        SILENT
+            .iter()
+            .any(|s| kind == *s || s.ends_with('.') && kind.starts_with(s))
+    })
 }
 
 /// The kind of file system that a folder is on, by the table of mounts (proc_pid_mountinfo(5)).
@@ -22,7 +25,9 @@ fn kind_of<'a>(folder: &Path, table: &'a str) -> Option<&'a str> {
         let (left, right) = line.split_once(" - ")?;
         // Blanks in names are written as \040.
         let at = left.split(' ').nth(4)?.replace("\\040", " ");
-        folder.starts_with(&at).then_some((at.len(), right.split(' ').next()?))
+        folder
+            .starts_with(&at)
+            .then_some((at.len(), right.split(' ').next()?))
     });
     // The last of several mounts at one place is visible.
     mounts.max_by_key(|m| m.0).map(|m| m.1)

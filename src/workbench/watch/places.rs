@@ -23,7 +23,9 @@ pub(super) fn places(file: &Path) -> BTreeSet<PathBuf> {
     let mut all = BTreeSet::new();
     let mut next = absolute(file);
     while all.len() < MAX_LINKS && all.insert(next.clone()) {
-        let Ok(target) = std::fs::read_link(&next) else { break };
+        let Ok(target) = std::fs::read_link(&next) else {
+            break;
+        };
         next = absolute(&next.parent().unwrap_or(Path::new("/")).join(target));
     }
     all

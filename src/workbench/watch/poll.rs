@@ -23,7 +23,9 @@ pub(super) struct Poll(Arc<Mutex<Folders>>);
 
 impl Poll {
     /// Looks from now on, in a thread of its own; `changed` gets an event for every file that changed.
-    pub(super) fn start(mut changed: impl FnMut(notify::Result<Event>) + Send + 'static) -> std::io::Result<Poll> {
+    pub(super) fn start(
+        mut changed: impl FnMut(notify::Result<Event>) + Send + 'static,
+    ) -> std::io::Result<Poll> {
         let poll = Poll::default();
         let weak = Arc::downgrade(&poll.0);
         let look = move || {
@@ -34,7 +36,9 @@ impl Poll {
                 std::thread::sleep(EVERY);
             }
         };
-        std::thread::Builder::new().name("poll".into()).spawn(look)?;
+        std::thread::Builder::new()
+            .name("poll".into())
+            .spawn(look)?;
         Ok(poll)
     }
 
@@ -51,23 +55,45 @@ impl Poll {
 /// The files that changed since the last look; none once the list of folders is gone.
 fn look(folders: &Weak<Mutex<Folders>>) -> Option<Vec<PathBuf>> {
     // The lock is not held while a slow file system answers: the window waits for it in `watch`.
-    let list: Vec<_> = lock(&*folders.upgrade()?).iter().map(|(folder, f)| (folder.clone(), f.0)).collect();
+    let list: Vec<_> = lock(&*folders.upgrade()?)
+        .iter()
+        .map(|(folder, f)| (folder.clone(), f.0))
+        .collect();
     let mut changed = Vec::new();
     for (folder, mode) in list {
         let now = stamps(&folder, mode);
         let folders = folders.upgrade()?;
         let mut folders = lock(&folders);
-        let Some((_, before)) = folders.get_mut(&folder) else { continue };
-        changed.extend(before.keys().filter(|file| !now.contains_key(*file)).cloned());
-        changed.extend(now.iter().filter(|(file, stamp)| before.get(*file) != Some(*stamp)).map(|n| n.0.clone()));
+        let Some((_, before)) = folders.get_mut(&folder) else {
+            continue;
+        };
+        changed.extend(
+            before
+                .keys()
+                .filter(|file| !now.contains_key(*file))
+                .cloned(),
+        );
+        changed.extend(
+            now.iter()
+                .filter(|(file, stamp)| before.get(*file) != Some(*stamp))
+                .map(|n| n.0.clone()),
+        );
         *before = now;
     }
     Some(changed)
 }
 
 fn stamps(folder: &Path, mode: RecursiveMode) -> BTreeMap<PathBuf, Stamp> {
-    let depth = if mode == RecursiveMode::Recursive { usize::MAX } else { 1 };
-    let files = WalkDir::new(folder).max_depth(depth).follow_links(true).into_iter().flatten();
+    let depth = if mode == RecursiveMode::Recursive {
+        usize::MAX
+    } else {
+        1
+    };
+    let files = WalkDir::new(folder)
+        .max_depth(depth)
+        .follow_links(true)
+        .into_iter()
+        .flatten();
     files
         .filter(|entry| entry.file_type().is_file())
         .filter_map(|entry| Some((entry.metadata().ok()?, entry.into_path())))
@@ -89,7 +115,12 @@ mod tests {
         let home = tempfile::tempdir().unwrap();
         let file = home.path().join("a.obj");
         let at = |file: &Path, date: SystemTime| {
-            std::fs::File::options().write(true).open(file).unwrap().set_modified(date).unwrap();
+            std::fs::File::options()
+                .write(true)
+                .open(file)
+                .unwrap()
+                .set_modified(date)
+                .unwrap();
         };
         let second = SystemTime::UNIX_EPOCH + Duration::from_secs(1_700_000_000);
         std::fs::write(&file, "1").unwrap();
@@ -100,7 +131,14 @@ mod tests {
         let weak = Arc::downgrade(&poll.0);
         let changed = || -> Vec<String> {
             let names = look(&weak).unwrap().into_iter();
-            names.map(|path| path.strip_prefix(home.path()).unwrap().to_string_lossy().into_owned()).collect()
+            names
+                .map(|path| {
+                    path.strip_prefix(home.path())
+                        .unwrap()
+                        .to_string_lossy()
+                        .into_owned()
+                })
+                .collect()
         };
         assert_eq!(changed(), [""; 0]);
         at(&file, second + Duration::from_millis(400));

@@ -24,13 +24,21 @@ enum Channel {
 /// The elements of a stream.
 pub(super) fn decode(data: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, String> {
     let version = header(data, &[0xa0, 0xa1])? & 1;
-    let tail = if version == 0 { stride } else { stride + stride / 4 };
+    let tail = if version == 0 {
+        stride
+    } else {
+        stride + stride / 4
+    };
     let mut stream = Stream::body(data, tail.max(if version == 0 { 32 } else { 24 }))?;
     let mut tail = Stream(&data[data.len() - tail..]);
     let mut last = tail.take(stride)?.to_vec();
     let channels: Vec<Channel> = match version {
         0 => vec![Channel::Bytes; stride / 4],
-        _ => tail.0.iter().map(|&byte| channel(byte)).collect::<Result<_, _>>()?,
+        _ => tail
+            .0
+            .iter()
+            .map(|&byte| channel(byte))
+            .collect::<Result<_, _>>()?,
     };
 
     // The vector grows with the bytes read: a large count alone must take no memory.
@@ -40,10 +48,16 @@ pub(super) fn decode(data: &[u8], count: usize, stride: usize) -> Result<Vec<u8>
     let mut left = count;
     while left > 0 {
         let elements = left.min(most);
-        let control = if version == 0 { &[][..] } else { stream.take(stride / 4)? };
+        let control = if version == 0 {
+            &[][..]
+        } else {
+            stream.take(stride / 4)?
+        };
         for (position, deltas) in deltas.iter_mut().enumerate() {
             let deltas = &mut deltas[..elements.next_multiple_of(GROUP)];
-            let mode = control.get(position / 4).map(|byte| byte >> (2 * (position % 4)) & 3);
+            let mode = control
+                .get(position / 4)
+                .map(|byte| byte >> (2 * (position % 4)) & 3);
             match mode {
                 None => groups(&mut stream, deltas, VERSION_0)?,
                 Some(mode @ 0..=1) => groups(&mut stream, deltas, VERSION_1[usize::from(mode)])?,
@@ -72,7 +86,9 @@ fn channel(byte: u8) -> Result<Channel, String> {
         (0, 0) => Ok(Channel::Bytes),
         (1, 0) => Ok(Channel::Words),
         (2, rotation) => Ok(Channel::Xor(u32::from(rotation))),
-        _ => Err(format!("its compressed data has the unknown channel mode {byte:#x}")),
+        _ => Err(format!(
+            "its compressed data has the unknown channel mode {byte:#x}"
+        )),
     }
 }
 
@@ -89,9 +105,17 @@ fn groups(stream: &mut Stream, deltas: &mut [u8], bits: [u32; 4]) -> Result<(), 
                 for (k, delta) in group.iter_mut().enumerate() {
                     let bit = k as u32 * bits;
                     // Single bits begin at the lowest one, others at the highest.
-                    let shift = if bits == 1 { bit % 8 } else { 8 - bits - bit % 8 };
+                    let shift = if bits == 1 {
+                        bit % 8
+                    } else {
+                        8 - bits - bit % 8
+                    };
                     let value = packed[(bit / 8) as usize] >> shift & sentinel;
-                    *delta = if value == sentinel { stream.byte()? } else { value };
+                    *delta = if value == sentinel {
+                        stream.byte()?
+                    } else {
+                        value
+                    };
                 }
             }
         }
@@ -109,13 +133,15 @@ fn follow(last: [u8; 4], delta: [u8; 4], channel: Channel) -> [u8; 4] {
             let word = |b: [u8; 4], i: usize| u16::from_le_bytes([b[2 * i], b[2 * i + 1]]);
             let next = |i: usize| {
                 let d = word(delta, i);
-                word(last, i).wrapping_add((d >> 1) ^ (d & 1).wrapping_neg()).to_le_bytes()
+                word(last, i)
+                    .wrapping_add((d >> 1) ^ (d & 1).wrapping_neg())
+                    .to_le_bytes()
             };
             let ([a, b], [c, d]) = (next(0), next(1));
             [a, b, c, d]
         }
-        Channel::Xor(rotation) => {
-            (u32::from_le_bytes(last) ^ u32::from_le_bytes(delta).rotate_right(rotation)).to_le_bytes()
-        }
+        Channel::Xor(rotation) => (u32::from_le_bytes(last)
+            ^ u32::from_le_bytes(delta).rotate_right(rotation))
+        .to_le_bytes(),
     }
 }

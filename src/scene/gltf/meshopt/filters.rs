@@ -8,15 +8,23 @@ pub(super) fn octahedral(bytes: &mut [u8], stride: usize) {
         let folded = z.min(0.0);
         let (x, y) = (x - folded.copysign(x), y - folded.copysign(y));
         let scale = most / (x * x + y * y + z * z).sqrt();
-        [(x * scale).round(), (y * scale).round(), (z * scale).round(), w]
+        [
+            (x * scale).round(),
+            (y * scale).round(),
+            (z * scale).round(),
+            w,
+        ]
     };
     match stride {
         4 => {
             for element in bytes.as_chunks_mut::<4>().0 {
-                *element = decode(element.map(|b| f32::from(b as i8)), 127.0).map(|v| v as i8 as u8);
+                *element =
+                    decode(element.map(|b| f32::from(b as i8)), 127.0).map(|v| v as i8 as u8);
             }
         }
-        _ => words(bytes, |element| decode(element.map(|w| f32::from(w as i16)), 32767.0).map(|v| v as i16 as u16)),
+        _ => words(bytes, |element| {
+            decode(element.map(|w| f32::from(w as i16)), 32767.0).map(|v| v as i16 as u16)
+        }),
     }
 }
 
@@ -50,20 +58,36 @@ pub(super) fn color(bytes: &mut [u8], stride: usize) {
         let full = (1 << bits) - 1;
         let a = alpha & (full >> 1);
         let scale = most / full as f32;
-        [y + orange - green, y + green, y - orange - green, a << 1 | a & 1].map(|v| (v as f32 * scale).round())
+        [
+            y + orange - green,
+            y + green,
+            y - orange - green,
+            a << 1 | a & 1,
+        ]
+        .map(|v| (v as f32 * scale).round())
     };
     match stride {
         4 => {
             for element in bytes.as_chunks_mut::<4>().0 {
                 let [y, orange, green, alpha] = *element;
                 let signed = |b: u8| i32::from(b as i8);
-                let input = [i32::from(y), signed(orange), signed(green), i32::from(alpha)];
+                let input = [
+                    i32::from(y),
+                    signed(orange),
+                    signed(green),
+                    i32::from(alpha),
+                ];
                 *element = decode(input, 255.0).map(|v| v as u8);
             }
         }
         _ => words(bytes, |[y, orange, green, alpha]| {
             let signed = |w: u16| i32::from(w as i16);
-            let input = [i32::from(y), signed(orange), signed(green), i32::from(alpha)];
+            let input = [
+                i32::from(y),
+                signed(orange),
+                signed(green),
+                i32::from(alpha),
+            ];
             decode(input, 65535.0).map(|v| v as u16)
         }),
     }
@@ -72,8 +96,15 @@ pub(super) fn color(bytes: &mut [u8], stride: usize) {
 /// Changes each four numbers of two bytes.
 fn words(bytes: &mut [u8], change: impl Fn([u16; 4]) -> [u16; 4]) {
     for element in bytes.as_chunks_mut::<8>().0 {
-        let [a, b, c, d] = change(std::array::from_fn(|i| u16::from_le_bytes([element[2 * i], element[2 * i + 1]])));
-        let ([a, b], [c, d], [e, f], [g, h]) = (a.to_le_bytes(), b.to_le_bytes(), c.to_le_bytes(), d.to_le_bytes());
+        let [a, b, c, d] = change(std::array::from_fn(|i| {
+            u16::from_le_bytes([element[2 * i], element[2 * i + 1]])
+        }));
+        let ([a, b], [c, d], [e, f], [g, h]) = (
+            a.to_le_bytes(),
+            b.to_le_bytes(),
+            c.to_le_bytes(),
+            d.to_le_bytes(),
+        );
         *element = [a, b, c, d, e, f, g, h];
     }
 }

@@ -5,7 +5,10 @@ use super::{Stream, header};
 /// Indices as little-endian numbers of two or four bytes.
 pub(super) fn bytes(indices: &[u32], stride: usize) -> Vec<u8> {
     match stride {
-        2 => indices.iter().flat_map(|&i| (i as u16).to_le_bytes()).collect(),
+        2 => indices
+            .iter()
+            .flat_map(|&i| (i as u16).to_le_bytes())
+            .collect(),
         _ => indices.iter().flat_map(|i| i.to_le_bytes()).collect(),
     }
 }
@@ -34,7 +37,13 @@ pub(super) fn triangles(data: &[u8], count: usize) -> Result<Vec<u32>, String> {
     let table = &data[data.len() - 16..];
     let codes = stream.take(count / 3)?;
     let mut out = Vec::with_capacity(count);
-    let mut state = State { stream, next: 0, last: 0, edges: Recent::new((0, 0)), vertices: Recent::new(0) };
+    let mut state = State {
+        stream,
+        next: 0,
+        last: 0,
+        edges: Recent::new((0, 0)),
+        vertices: Recent::new(0),
+    };
     for &code in codes {
         out.extend(state.triangle(code, table)?);
     }
@@ -54,7 +63,10 @@ struct Recent<T> {
 
 impl<T: Copy> Recent<T> {
     fn new(zero: T) -> Recent<T> {
-        Recent { items: [zero; 16], count: 0 }
+        Recent {
+            items: [zero; 16],
+            count: 0,
+        }
     }
 
     fn push(&mut self, item: T) {
@@ -64,7 +76,10 @@ impl<T: Copy> Recent<T> {
 
     /// The latest has index 0.
     fn get(&self, index: u8) -> Result<T, String> {
-        let place = self.count.checked_sub(1 + usize::from(index)).filter(|_| index < 16);
+        let place = self
+            .count
+            .checked_sub(1 + usize::from(index))
+            .filter(|_| index < 16);
         place.map(|p| self.items[p % 16]).ok_or_else(|| {
             "its compressed triangles refer to an edge or a vertex that does not exist: it is damaged".into()
         })
@@ -134,7 +149,9 @@ impl State<'_> {
             };
         }
         let [a, b, c] = triangle;
-        [(b, a), (c, b), (a, c)].into_iter().for_each(|edge| self.edges.push(edge));
+        [(b, a), (c, b), (a, c)]
+            .into_iter()
+            .for_each(|edge| self.edges.push(edge));
         for (index, corner) in triangle.iter().zip(corners) {
             if corner == 0 || corner == 15 {
                 self.vertices.push(*index);

@@ -60,7 +60,12 @@ impl Compressed {
 
     /// The view's uncompressed bytes.
     pub fn decode(&self, stream: &[u8]) -> Result<Vec<u8>, String> {
-        let Layout { count, stride, mode, filter } = self.layout;
+        let Layout {
+            count,
+            stride,
+            mode,
+            filter,
+        } = self.layout;
         let mut bytes = match mode {
             Mode::Attributes => attributes::decode(stream, count, stride)?,
             Mode::Triangles => indices::bytes(&indices::triangles(stream, count)?, stride),
@@ -87,8 +92,14 @@ fn extension(extensions: Option<&Map<String, Value>>) -> Option<&Value> {
 }
 
 fn parse(fields: &Value) -> Result<Compressed, String> {
-    let number = |key: &str| fields.get(key).and_then(Value::as_u64).and_then(|n| usize::try_from(n).ok());
-    let needed = |key: &str| number(key).ok_or_else(|| format!("its compression has no valid `{key}`"));
+    let number = |key: &str| {
+        fields
+            .get(key)
+            .and_then(Value::as_u64)
+            .and_then(|n| usize::try_from(n).ok())
+    };
+    let needed =
+        |key: &str| number(key).ok_or_else(|| format!("its compression has no valid `{key}`"));
     let name = |key: &str| fields.get(key).map(|v| v.as_str().unwrap_or("of no name"));
     let mode = match name("mode").unwrap_or("of no name") {
         "ATTRIBUTES" => Mode::Attributes,
@@ -104,22 +115,41 @@ fn parse(fields: &Value) -> Result<Compressed, String> {
         "COLOR" => Filter::Color,
         other => return Err(format!("its compression filter {other} is not known")),
     };
-    let layout = Layout { count: needed("count")?, stride: needed("byteStride")?, mode, filter };
+    let layout = Layout {
+        count: needed("count")?,
+        stride: needed("byteStride")?,
+        mode,
+        filter,
+    };
     if !layout.is_valid() {
         let Layout { count, stride, .. } = layout;
-        return Err(format!("{count} elements of {stride} bytes do not fit {mode:?} with the filter {filter:?}"));
+        return Err(format!(
+            "{count} elements of {stride} bytes do not fit {mode:?} with the filter {filter:?}"
+        ));
     }
     let offset = number("byteOffset").unwrap_or(0);
-    Ok(Compressed { buffer: needed("buffer")?, offset, length: needed("byteLength")?, layout })
+    Ok(Compressed {
+        buffer: needed("buffer")?,
+        offset,
+        length: needed("byteLength")?,
+        layout,
+    })
 }
 
 impl Layout {
     /// The rules of the extension's section "JSON schema updates".
     fn is_valid(&self) -> bool {
-        let Layout { count, stride, mode, filter } = *self;
+        let Layout {
+            count,
+            stride,
+            mode,
+            filter,
+        } = *self;
         let by_mode = match mode {
             Mode::Attributes => stride.is_multiple_of(4) && (4..=256).contains(&stride),
-            Mode::Triangles => count.is_multiple_of(3) && [2, 4].contains(&stride) && filter == Filter::None,
+            Mode::Triangles => {
+                count.is_multiple_of(3) && [2, 4].contains(&stride) && filter == Filter::None
+            }
             Mode::Indices => [2, 4].contains(&stride) && filter == Filter::None,
         };
         let by_filter = match filter {
@@ -170,7 +200,11 @@ impl<'a> Stream<'a> {
     }
 
     fn end(&self) -> Result<(), String> {
-        if self.0.is_empty() { Ok(()) } else { Err(LONG.into()) }
+        if self.0.is_empty() {
+            Ok(())
+        } else {
+            Err(LONG.into())
+        }
     }
 }
 
@@ -180,6 +214,8 @@ fn header(stream: &[u8], known: &[u8]) -> Result<u8, String> {
     if known.contains(&first) {
         Ok(first)
     } else {
-        Err(format!("its compressed data has the unknown header {first:#x}"))
+        Err(format!(
+            "its compressed data has the unknown header {first:#x}"
+        ))
     }
 }

@@ -32,22 +32,36 @@ pub(super) fn project(polygon: &[[f32; 3]]) -> Option<impl Iterator<Item = Vec<P
     if normal[axis] < 0.0 {
         (right, up) = (up, right);
     }
-    let point = move |p: &[f32; 3]| Point { x: f64::from(p[right]), y: f64::from(p[up]) };
+    let point = move |p: &[f32; 3]| Point {
+        x: f64::from(p[right]),
+        y: f64::from(p[up]),
+    };
     // Moves points along the normal to the plane of the two axes. Such a shear keeps crossings.
     let slope = [right, up].map(|k| normal[k] / normal[axis]);
     let own = move |p: &[f32; 3]| {
         let (Point { x, y }, depth) = (point(p), f64::from(p[axis]));
-        Point { x: x - slope[0] * depth, y: y - slope[1] * depth }
+        Point {
+            x: x - slope[0] * depth,
+            y: y - slope[1] * depth,
+        }
     };
     let exact = polygon.iter().map(point).collect();
     // It is the same plane if the normal is along the axis.
     let other = (slope != [0.0; 2]).then_some(own);
-    Some(std::iter::once(exact).chain(other.into_iter().map(|own| polygon.iter().map(own).collect())))
+    Some(
+        std::iter::once(exact).chain(
+            other
+                .into_iter()
+                .map(|own| polygon.iter().map(own).collect()),
+        ),
+    )
 }
 
 /// Twice the polygon's area along each axis.
 fn newell(polygon: &[[f32; 3]]) -> [f64; 3] {
-    let Some(first) = polygon.first() else { return [0.0; 3] };
+    let Some(first) = polygon.first() else {
+        return [0.0; 3];
+    };
     // From a corner of its own: far from the origin the sum would lose its digits.
     let from = |p: &[f32; 3]| [0, 1, 2].map(|k| f64::from(p[k]) - f64::from(first[k]));
     let mut sum = [0.0; 3];
@@ -63,14 +77,19 @@ fn newell(polygon: &[[f32; 3]]) -> [f64; 3] {
 
 /// Whether three successive corners, or the first with two others, have an area: false for points and lines.
 pub(super) fn has_area(polygon: &[[f32; 3]]) -> bool {
-    let mut triangles = polygon.windows(2).filter_map(|pair| Some([*polygon.first()?, pair[0], pair[1]]));
+    let mut triangles = polygon
+        .windows(2)
+        .filter_map(|pair| Some([*polygon.first()?, pair[0], pair[1]]));
     triangles.any(|triangle| newell(&triangle).iter().any(|a| *a != 0.0))
 }
 
 /// Twice the area of a polygon that turns left.
 pub(super) fn area(points: &[Point]) -> f64 {
     let first = points.first().copied().unwrap_or(Point { x: 0.0, y: 0.0 });
-    points.windows(2).map(|pair| cross(first, pair[0], pair[1])).sum()
+    points
+        .windows(2)
+        .map(|pair| cross(first, pair[0], pair[1]))
+        .sum()
 }
 
 /// Whether every corner turns left, and all together once around.

@@ -30,8 +30,18 @@ impl Tree {
             levels += 1;
         }
         let zero = Point { x: 0.0, y: 0.0 };
-        let empty = Node { low: zero, high: zero, begin: 0, end: 0, live: 0 };
-        let mut tree = Tree { nodes: vec![empty; 2 << levels], corners, leaf_of: vec![0; points.len()] };
+        let empty = Node {
+            low: zero,
+            high: zero,
+            begin: 0,
+            end: 0,
+            live: 0,
+        };
+        let mut tree = Tree {
+            nodes: vec![empty; 2 << levels],
+            corners,
+            leaf_of: vec![0; points.len()],
+        };
         tree.build(points, 1, 0, tree.corners.len());
         tree
     }
@@ -39,14 +49,37 @@ impl Tree {
     fn build(&mut self, points: &[Point], node: usize, begin: usize, end: usize) {
         let at = |i: &u32| points[*i as usize];
         let corners = &mut self.corners[begin..end];
-        let (mut low, mut high) = (Point { x: f64::MAX, y: f64::MAX }, Point { x: f64::MIN, y: f64::MIN });
+        let (mut low, mut high) = (
+            Point {
+                x: f64::MAX,
+                y: f64::MAX,
+            },
+            Point {
+                x: f64::MIN,
+                y: f64::MIN,
+            },
+        );
         for p in corners.iter().map(at) {
-            low = Point { x: low.x.min(p.x), y: low.y.min(p.y) };
-            high = Point { x: high.x.max(p.x), y: high.y.max(p.y) };
+            low = Point {
+                x: low.x.min(p.x),
+                y: low.y.min(p.y),
+            };
+            high = Point {
+                x: high.x.max(p.x),
+                y: high.y.max(p.y),
+            };
         }
-        self.nodes[node] = Node { low, high, begin: begin as u32, end: end as u32, live: (end - begin) as u32 };
+        self.nodes[node] = Node {
+            low,
+            high,
+            begin: begin as u32,
+            end: end as u32,
+            live: (end - begin) as u32,
+        };
         if 2 * node >= self.nodes.len() {
-            corners.iter().for_each(|i| self.leaf_of[*i as usize] = node as u32);
+            corners
+                .iter()
+                .for_each(|i| self.leaf_of[*i as usize] = node as u32);
             return;
         }
         let middle = corners.len() / 2;

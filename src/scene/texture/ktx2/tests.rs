@@ -13,9 +13,16 @@ const ZSTANDARD: u32 = 2;
 /// A file with one level and no descriptor (KTX 2.0, sections 3 and 4).
 fn file(format: u32, scheme: u32, [width, height]: [u32; 2], level: &[u8]) -> Vec<u8> {
     let mut out = ktx2::MAGIC.to_vec();
-    let words = [format, 1, width, height, 0, 0, 1, 1, scheme, 0, 0, 0, 0, 0, 0, 0, 0];
+    let words = [
+        format, 1, width, height, 0, 0, 1, 1, scheme, 0, 0, 0, 0, 0, 0, 0, 0,
+    ];
     let place = [104, level.len() as u64, level.len() as u64];
-    out.extend(words.iter().flat_map(|w| w.to_le_bytes()).chain(place.iter().flat_map(|w| w.to_le_bytes())));
+    out.extend(
+        words
+            .iter()
+            .flat_map(|w| w.to_le_bytes())
+            .chain(place.iter().flat_map(|w| w.to_le_bytes())),
+    );
     out.extend(level);
     out
 }
@@ -27,7 +34,12 @@ fn texels(bytes: &[u8]) -> Vec<[u8; 4]> {
 /// Four flat quarters, cut at texel 4: red and green, blue and a grey that is a quarter opaque.
 #[test]
 fn universal_textures_have_their_colours() {
-    let colors = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [128, 128, 128, 64]];
+    let colors = [
+        [255, 0, 0, 255],
+        [0, 255, 0, 255],
+        [0, 0, 255, 255],
+        [128, 128, 128, 64],
+    ];
     // Endpoints of ETC1S have 5 bits, of UASTC up to 8.
     for (name, bytes, (width, height), alpha, most) in [
         ("ETC1S", ETC1S, (10, 6), false, 5),
@@ -43,7 +55,11 @@ fn universal_textures_have_their_colours() {
                 wanted[3] = 255;
             }
             let off = found.0.iter().zip(wanted).map(|(a, b)| a.abs_diff(b)).max();
-            assert!(off <= Some(most), "{name} at {x}, {y}: {:?} for {wanted:?}", found.0);
+            assert!(
+                off <= Some(most),
+                "{name} at {x}, {y}: {:?} for {wanted:?}",
+                found.0
+            );
         }
     }
 }
@@ -55,7 +71,10 @@ fn plain_formats_are_read() {
     assert_eq!(one(Format::B8G8R8A8_UNORM, &[1, 2, 3, 4]), [3, 2, 1, 4]);
     assert_eq!(one(Format::R8G8B8_UNORM, &[1, 2, 3]), [1, 2, 3, 255]);
     // BC1 with the colours red and black (5:6:5), all texels the first; then with three colours, all texels the fourth.
-    assert_eq!(one(Format::BC1_RGBA_UNORM_BLOCK, &[0, 0xf8, 0, 0, 0, 0, 0, 0]), [255, 0, 0, 255]);
+    assert_eq!(
+        one(Format::BC1_RGBA_UNORM_BLOCK, &[0, 0xf8, 0, 0, 0, 0, 0, 0]),
+        [255, 0, 0, 255]
+    );
     let holes = [0, 0, 0, 0xf8, 255, 255, 255, 255];
     assert_eq!(one(Format::BC1_RGBA_SRGB_BLOCK, &holes), [0; 4]);
     assert_eq!(one(Format::BC1_RGB_SRGB_BLOCK, &holes), [0, 0, 0, 255]);
@@ -63,24 +82,60 @@ fn plain_formats_are_read() {
     let block = [90, 90, 0, 0, 0, 0, 0, 0, 0, 0xf8, 0, 0, 0, 0, 0, 0];
     assert_eq!(one(Format::BC3_SRGB_BLOCK, &block), [255, 0, 0, 90]);
     // BC7, mode 6: seven bits for each end of red, green, blue and alpha, then the lowest bit of each end.
-    let fields = [(64u128, 7), (127, 7), (0, 7), (5, 7), (0, 7), (64, 7), (0, 7), (100, 7), (0, 7), (1, 1)];
-    let (block, _) = fields.iter().fold((0, 0), |(bits, at), (value, size)| (bits | value << at, at + size));
-    assert_eq!(one(Format::BC7_SRGB_BLOCK, &block.to_le_bytes()), [255, 11, 129, 201]);
+    let fields = [
+        (64u128, 7),
+        (127, 7),
+        (0, 7),
+        (5, 7),
+        (0, 7),
+        (64, 7),
+        (0, 7),
+        (100, 7),
+        (0, 7),
+        (1, 1),
+    ];
+    let (block, _) = fields.iter().fold((0, 0), |(bits, at), (value, size)| {
+        (bits | value << at, at + size)
+    });
+    assert_eq!(
+        one(Format::BC7_SRGB_BLOCK, &block.to_le_bytes()),
+        [255, 11, 129, 201]
+    );
 }
 
 /// A frame of one raw block (RFC 8878, section 3.1).
 fn frame(content: &[u8]) -> Vec<u8> {
     let size = content.len() as u8;
-    let header = [0x28, 0xb5, 0x2f, 0xfd, 0x20, size, size << 3 | 1, size >> 5, 0];
+    let header = [
+        0x28,
+        0xb5,
+        0x2f,
+        0xfd,
+        0x20,
+        size,
+        size << 3 | 1,
+        size >> 5,
+        0,
+    ];
     [&header[..], content].concat()
 }
 
 #[test]
 fn plain_formats_with_zstandard_are_read() {
     let content: Vec<u8> = (0..16).collect();
-    let bytes = file(Format::R8G8B8A8_UNORM.value(), ZSTANDARD, [2, 2], &frame(&content));
+    let bytes = file(
+        Format::R8G8B8A8_UNORM.value(),
+        ZSTANDARD,
+        [2, 2],
+        &frame(&content),
+    );
     assert_eq!(texels(&bytes).concat(), content);
-    let short = file(Format::R8G8B8A8_UNORM.value(), ZSTANDARD, [3, 2], &frame(&content));
+    let short = file(
+        Format::R8G8B8A8_UNORM.value(),
+        ZSTANDARD,
+        [3, 2],
+        &frame(&content),
+    );
     assert!(pixels(&short).unwrap_err().contains("needs 24 bytes"));
 }
 
@@ -98,7 +153,10 @@ fn other_files_are_refused() {
         bytes[at..at + 4].copy_from_slice(&word.to_le_bytes());
         bytes
     };
-    refused("R16_SFLOAT is not read", &with(12, Format::R16_SFLOAT.value()));
+    refused(
+        "R16_SFLOAT is not read",
+        &with(12, Format::R16_SFLOAT.value()),
+    );
     for (at, word) in [(24, 0), (28, 1), (32, 2), (36, 6)] {
         refused("no plain 2D texture", &with(at, word));
     }
@@ -134,7 +192,15 @@ fn damaged_files_are_refused_or_read() {
     for bytes in [ETC1S, ETC1S_ALPHA, UASTC, UASTC_ZSTD] {
         (0..bytes.len()).for_each(|cut| assert!(pixels(&bytes[..cut]).is_err(), "cut at {cut}"));
         for at in 0..bytes.len() {
-            for value in [0, 1, 0x7f, 0xff, bytes[at] ^ 1, bytes[at] ^ 0x80, bytes[at].wrapping_add(1)] {
+            for value in [
+                0,
+                1,
+                0x7f,
+                0xff,
+                bytes[at] ^ 1,
+                bytes[at] ^ 0x80,
+                bytes[at].wrapping_add(1),
+            ] {
                 let mut changed = bytes.to_vec();
                 changed[at] = value;
                 if let Ok(image) = pixels(&changed) {

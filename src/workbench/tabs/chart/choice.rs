@@ -20,17 +20,23 @@ pub struct Choice {
 
 impl Default for Choice {
     fn default() -> Choice {
-        Choice { subject: 0, part: "total".into(), metric: &METRICS[0] }
+        Choice {
+            subject: 0,
+            part: "total".into(),
+            metric: &METRICS[0],
+        }
     }
 }
 
 impl Choice {
     /// The graph's name of the part, and the bounces that it is compared at.
     pub fn part_and_bounces(&self, data: Option<&Data>) -> (String, u32) {
-        let named = self
-            .part
-            .split_once(", ")
-            .and_then(|(part, bounces)| Some((part.to_string(), bounces.strip_suffix(" bounces")?.parse().ok()?)));
+        let named = self.part.split_once(", ").and_then(|(part, bounces)| {
+            Some((
+                part.to_string(),
+                bounces.strip_suffix(" bounces")?.parse().ok()?,
+            ))
+        });
         let first = data.and_then(|d| *d.bounces.get(self.subject)?);
         named.unwrap_or_else(|| (self.part.clone(), first.unwrap_or(ALL_BOUNCES)))
     }
@@ -52,11 +58,21 @@ impl Chosen {
     /// Looks whether the choice is another one.
     pub fn refresh(&mut self, folder: Option<&Folder>, choice: &Choice) -> Option<Arc<Data>> {
         let data = folder.and_then(|f| f.data.as_ref()?.as_ref().ok().cloned());
-        let of = folder.filter(|_| data.is_some()).map(|f| (f.path.clone(), choice.clone()));
+        let of = folder
+            .filter(|_| data.is_some())
+            .map(|f| (f.path.clone(), choice.clone()));
         if of != self.of {
             self.of = of;
-            self.dots = data.as_ref().map_or(Vec::new(), |d| d.scored(choice.subject, &choice.part, choice.metric));
-            self.front = pareto(&self.dots.iter().map(|d| (d.ms, d.error)).collect::<Vec<_>>());
+            self.dots = data.as_ref().map_or(Vec::new(), |d| {
+                d.scored(choice.subject, &choice.part, choice.metric)
+            });
+            self.front = pareto(
+                &self
+                    .dots
+                    .iter()
+                    .map(|d| (d.ms, d.error))
+                    .collect::<Vec<_>>(),
+            );
             self.on_front = vec![false; self.dots.len()];
             self.front.iter().for_each(|i| self.on_front[*i] = true);
         }

@@ -9,15 +9,23 @@ use std::sync::Arc;
 
 /// Folders under `captures/sweeps` that hold a sweep, by name.
 pub fn list(root: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(root.join("captures/sweeps")).into_iter().flatten().flatten();
-    let mut list: Vec<PathBuf> = entries.map(|e| e.path()).filter(|p| p.join("sweep.json").is_file()).collect();
+    let entries = std::fs::read_dir(root.join("captures/sweeps"))
+        .into_iter()
+        .flatten()
+        .flatten();
+    let mut list: Vec<PathBuf> = entries
+        .map(|e| e.path())
+        .filter(|p| p.join("sweep.json").is_file())
+        .collect();
     list.sort();
     list
 }
 
 /// The folder's name.
 pub fn name(folder: &Path) -> String {
-    folder.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned())
+    folder
+        .file_name()
+        .map_or(String::new(), |n| n.to_string_lossy().into_owned())
 }
 
 /// A folder that is read or has been.
@@ -38,12 +46,18 @@ impl Folder {
             let _ = out.send(collect(&[folder]).map(|c| Data::new(&c)));
             wake();
         });
-        Folder { path, data: None, coming }
+        Folder {
+            path,
+            data: None,
+            coming,
+        }
     }
 
     /// Takes in what was read; whether that was now.
     pub fn take(&mut self) -> bool {
-        let Ok(data) = self.coming.try_recv() else { return false };
+        let Ok(data) = self.coming.try_recv() else {
+            return false;
+        };
         self.data = Some(data.map(Arc::new).map_err(|e| e.to_string()));
         true
     }
@@ -54,7 +68,10 @@ pub fn differences(now: &Subject, device: &str, subject: &(Subject, String)) -> 
     let there = &subject.0;
     let list = [
         ("scene", now.scene != there.scene),
-        ("light or geometry", now.scene == there.scene && now.sha256 != there.sha256),
+        (
+            "light or geometry",
+            now.scene == there.scene && now.sha256 != there.sha256,
+        ),
         ("camera", now.camera != there.camera),
         ("size", now.size != there.size),
         ("time", now.time != there.time),

@@ -55,14 +55,25 @@ impl Gather {
             let progress = |now: Gathered| {
                 let _ = out.send(Message::Progress(now));
                 wake();
-                if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                if stop.load(Ordering::Relaxed) {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
             };
             let (result, messages) = work(job, progress);
             let _ = out.send(Message::Done(result));
             wake();
             messages
         });
-        Gather { state: None, first: None, cancelled: false, cancel, messages, thread: Some(thread) }
+        Gather {
+            state: None,
+            first: None,
+            cancelled: false,
+            cancel,
+            messages,
+            thread: Some(thread),
+        }
     }
 
     /// Tells it to stop; whole blocks of samples are kept.
@@ -75,7 +86,11 @@ impl Gather {
     pub fn left(&self) -> Option<Duration> {
         let (now, (first, since)) = (self.state?, self.first?);
         let done = now.samples.checked_sub(first).filter(|done| *done > 0)?;
-        Some(since.elapsed().mul_f64(now.goal.saturating_sub(now.samples) as f64 / done as f64))
+        Some(
+            since
+                .elapsed()
+                .mul_f64(now.goal.saturating_sub(now.samples) as f64 / done as f64),
+        )
     }
 
     /// Takes in the messages; the samples, or what went wrong, once it has ended.
@@ -96,24 +111,40 @@ impl Gather {
     pub fn stop(mut self, patience: Duration) -> Vec<String> {
         self.cancel();
         let until = Instant::now() + patience;
-        let Some(thread) = self.thread.take() else { return Vec::new() };
+        let Some(thread) = self.thread.take() else {
+            return Vec::new();
+        };
         while !thread.is_finished() && Instant::now() < until {
             std::thread::sleep(Duration::from_millis(5));
         }
         // As the engine: a frame that never ends cannot be waited for.
-        if thread.is_finished() { thread.join().unwrap_or_default() } else { Vec::new() }
+        if thread.is_finished() {
+            thread.join().unwrap_or_default()
+        } else {
+            Vec::new()
+        }
     }
 }
 
-fn work(job: Job, mut progress: impl FnMut(Gathered) -> ControlFlow<()>) -> (Result<u64, LabError>, Vec<String>) {
+fn work(
+    job: Job,
+    mut progress: impl FnMut(Gathered) -> ControlFlow<()>,
+) -> (Result<u64, LabError>, Vec<String>) {
     let lab = match Lab::open(job.home, job.gpu) {
         Ok(lab) => lab,
         Err(e) => return (Err(e), Vec::new()),
     };
     let lit = job.experiment.adapted(job.scene);
     let goal = Goal::Samples(job.samples);
-    let result = lit
-        .map_err(LabError::from)
-        .and_then(|scene| gather(&lab, &job.experiment, &scene, job.bounces, goal, &mut progress));
+    let result = lit.map_err(LabError::from).and_then(|scene| {
+        gather(
+            &lab,
+            &job.experiment,
+            &scene,
+            job.bounces,
+            goal,
+            &mut progress,
+        )
+    });
     (result.map(|r| r.samples), lab.gpu.messages())
 }

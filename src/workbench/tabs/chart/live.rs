@@ -70,14 +70,22 @@ impl Default for State {
 impl State {
     /// Scene, camera, size and time of side A's picture, as last measured.
     pub fn subject(&self) -> Option<&Subject> {
-        self.sides[0].error.as_ref()?.result.as_ref().ok().map(|v| &v.subject)
+        self.sides[0]
+            .error
+            .as_ref()?
+            .result
+            .as_ref()
+            .ok()
+            .map(|v| &v.subject)
     }
 
     /// Samples of the sweep's reference and of A's, if they are not the same.
     pub fn reference_differs(&self, swept: &[(u32, u64)]) -> Option<String> {
         let result = self.sides[0].error.as_ref()?;
         let now = result.result.as_ref().ok()?.error?.samples;
-        let (_, there) = swept.iter().find(|(bounces, _)| *bounces == result.query.bounces)?;
+        let (_, there) = swept
+            .iter()
+            .find(|(bounces, _)| *bounces == result.query.bounces)?;
         (now != *there).then(|| format!("reference ({there} / {now} samples)"))
     }
 
@@ -91,7 +99,12 @@ impl State {
         let side = &self.sides[side];
         let (ms, error) = side.place()?;
         let fresh = side.error.as_ref().is_some_and(|j| j.request >= sent);
-        Some(Live { ms, error, fresh, trail: side.trail.clone() })
+        Some(Live {
+            ms,
+            error,
+            fresh,
+            trail: side.trail.clone(),
+        })
     }
 }
 
@@ -102,7 +115,9 @@ impl Side {
     }
 
     fn answers(&self, asked: &(u64, ErrorQuery)) -> bool {
-        self.error.as_ref().is_some_and(|j| j.request >= asked.0 && j.query == asked.1)
+        self.error
+            .as_ref()
+            .is_some_and(|j| j.request >= asked.0 && j.query == asked.1)
     }
 
     fn place(&self) -> Option<(f64, f64)> {
@@ -115,7 +130,14 @@ impl Side {
 impl super::Chart {
     /// Takes in the time of a frame.
     pub fn note(&mut self, picture: &PictureReport) {
-        let Some(side) = self.live.sides.get_mut(picture.side).filter(|_| !picture.preview) else { return };
+        let Some(side) = self
+            .live
+            .sides
+            .get_mut(picture.side)
+            .filter(|_| !picture.preview)
+        else {
+            return;
+        };
         if side.request != picture.request {
             // The dot moves: what it leaves is where it was when its error was right.
             if let Some(at) = side.place().filter(|at| side.trail.last() != Some(at)) {
@@ -134,7 +156,10 @@ impl super::Chart {
 
     /// Metric and error of what a side shows, if it has been measured: 0 is perfect.
     pub fn known_error(&self, side: usize, sent: u64) -> Option<(&str, f64)> {
-        let measured = self.live.sides[side].error.as_ref().filter(|e| e.request >= sent)?;
+        let measured = self.live.sides[side]
+            .error
+            .as_ref()
+            .filter(|e| e.request >= sent)?;
         let error = measured.result.as_ref().ok()?.error?.error;
         Some((measured.query.metric.key, error))
     }
@@ -155,14 +180,25 @@ impl super::Chart {
 impl Workbench {
     /// The error that is to be asked for of A and B.
     fn query(&self) -> ErrorQuery {
-        let (part, bounces) = self.chart.choice.part_and_bounces(self.chart.data().map(|d| &**d));
+        let (part, bounces) = self
+            .chart
+            .choice
+            .part_and_bounces(self.chart.data().map(|d| &**d));
         let metric = self.chart.choice.metric;
-        ErrorQuery { part, metric, bounces, gathered: self.chart.live.gathered }
+        ErrorQuery {
+            part,
+            metric,
+            bounces,
+            gathered: self.chart.live.gathered,
+        }
     }
 
     /// Whether a side shows something whose error was not asked for.
     fn needs_error(&self, side: usize, query: &ErrorQuery) -> bool {
-        let shows = self.sides[side].picture.as_ref().is_some_and(|p| !p.preview && p.request >= self.sent_number);
+        let shows = self.sides[side]
+            .picture
+            .as_ref()
+            .is_some_and(|p| !p.preview && p.request >= self.sent_number);
         let asked = self.chart.live.sides[side].asked.as_ref();
         let known = asked.is_some_and(|a| a.0 >= self.sent_number && a.1 == *query);
         self.desired.sides[side].is_some() && shows && self.sides[side].errors.is_empty() && !known
@@ -200,7 +236,8 @@ impl Workbench {
     pub(crate) fn error_came(&mut self, result: ErrorResult) {
         let side = &mut self.chart.live.sides[result.side];
         let subject = |j: &ErrorResult| j.result.as_ref().ok().map(|v| v.subject.clone());
-        let other = |old: &ErrorResult| old.query != result.query || subject(old) != subject(&result);
+        let other =
+            |old: &ErrorResult| old.query != result.query || subject(old) != subject(&result);
         if side.error.as_ref().is_some_and(other) {
             side.trail.clear();
         }
@@ -215,14 +252,17 @@ impl Workbench {
         // A single frame after a rest is slower than many: clocks are low. The error worker is not slowed by those that
         // follow.
         if !self.chart.live.awaits() {
-            self.engine.order(Order::Frames((MEASURED.as_secs_f64() * 1e3 / ms.max(0.1)).clamp(2.0, 32.0) as u32));
+            self.engine.order(Order::Frames(
+                (MEASURED.as_secs_f64() * 1e3 / ms.max(0.1)).clamp(2.0, 32.0) as u32,
+            ));
         }
         self.event("error", event);
     }
 
     /// Gathers the reference of what A shows.
     pub(super) fn start_gathering(&mut self) {
-        let (Some(side), Some(scene), Some(picture)) = (&self.desired.sides[0], &self.scene, &self.sides[0].picture)
+        let (Some(side), Some(scene), Some(picture)) =
+            (&self.desired.sides[0], &self.scene, &self.sides[0].picture)
         else {
             return;
         };
@@ -230,15 +270,27 @@ impl Workbench {
         self.fixed_size = Some(experiment.size);
         let (bounces, samples) = (self.query().bounces, self.chart.live.samples);
         let (home, gpu) = (self.home.clone(), self.gpu.clone());
-        let job = Job { home, gpu, experiment, scene: scene.clone(), bounces, samples };
+        let job = Job {
+            home,
+            gpu,
+            experiment,
+            scene: scene.clone(),
+            bounces,
+            samples,
+        };
         self.chart.live.said.clear();
         self.chart.live.gather = Some(Gather::start(job, self.wake.clone()));
-        self.event("gathering", json!({ "bounces": bounces, "samples": samples }));
+        self.event(
+            "gathering",
+            json!({ "bounces": bounces, "samples": samples }),
+        );
     }
 
     /// Takes in how far the gathering is.
     pub(super) fn poll_gather(&mut self) {
-        let Some(gather) = self.chart.live.gather.as_mut() else { return };
+        let Some(gather) = self.chart.live.gather.as_mut() else {
+            return;
+        };
         let samples = |gather: &Gather| gather.state.map(|s| s.samples);
         let before = samples(gather);
         let result = gather.take();
@@ -248,13 +300,20 @@ impl Workbench {
         }
         let Some(result) = result else { return };
         let gather = self.chart.live.gather.take();
-        self.chart.live.messages.extend(gather.into_iter().flat_map(|g| g.stop(Duration::from_secs(5))));
+        self.chart.live.messages.extend(
+            gather
+                .into_iter()
+                .flat_map(|g| g.stop(Duration::from_secs(5))),
+        );
         self.chart.live.gathered += 1;
         self.chart.live.said = match &result {
             Ok(samples) => format!("gathered {samples} samples a pixel"),
             Err(e) => format!("not gathered: {e}"),
         };
-        let (samples, why) = (result.as_ref().ok(), result.as_ref().err().map(ToString::to_string));
+        let (samples, why) = (
+            result.as_ref().ok(),
+            result.as_ref().err().map(ToString::to_string),
+        );
         self.event("gathered", json!({ "samples": samples, "why": why }));
     }
 }
@@ -274,13 +333,37 @@ mod tests {
             size: (96, 72),
             time: String::new(),
         };
-        let error = Some(ReferenceError { error: 0.1, noise: Noise { relmse: 0.0, structure: 0.0 }, samples: 256 });
-        let query = ErrorQuery { part: "total".into(), metric: &METRICS[0], bounces: 2, gathered: 0 };
+        let error = Some(ReferenceError {
+            error: 0.1,
+            noise: Noise {
+                relmse: 0.0,
+                structure: 0.0,
+            },
+            samples: 256,
+        });
+        let query = ErrorQuery {
+            part: "total".into(),
+            metric: &METRICS[0],
+            bounces: 2,
+            gathered: 0,
+        };
         let mut state = State::default();
-        assert_eq!(state.reference_differs(&[(2, 32)]), None, "nothing is measured yet");
+        assert_eq!(
+            state.reference_differs(&[(2, 32)]),
+            None,
+            "nothing is measured yet"
+        );
         let result = Ok(PictureError { subject, error });
-        state.sides[0].error = Some(ErrorResult { side: 0, request: 1, query, result });
-        assert_eq!(state.reference_differs(&[(2, 32)]).as_deref(), Some("reference (32 / 256 samples)"));
+        state.sides[0].error = Some(ErrorResult {
+            side: 0,
+            request: 1,
+            query,
+            result,
+        });
+        assert_eq!(
+            state.reference_differs(&[(2, 32)]).as_deref(),
+            Some("reference (32 / 256 samples)")
+        );
         assert_eq!(state.reference_differs(&[(1, 32), (2, 256)]), None);
     }
 }

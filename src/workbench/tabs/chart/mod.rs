@@ -53,18 +53,26 @@ impl Workbench {
     pub(crate) fn chart_tab(&mut self, ui: &mut Ui) {
         ui.weak("How far pictures are from the path-traced truth, and what they take: a sweep's, and the one shown.");
         self.folder_row(ui);
-        let data = self.chart.chosen.refresh(self.chart.folder.as_ref(), &self.chart.choice);
+        let data = self
+            .chart
+            .chosen
+            .refresh(self.chart.folder.as_ref(), &self.chart.choice);
         self.choice_row(ui, data.as_deref());
-        let subject = data.as_ref().and_then(|d| d.keys.get(self.chart.choice.subject));
+        let subject = data
+            .as_ref()
+            .and_then(|d| d.keys.get(self.chart.choice.subject));
         let now = self.chart.live.subject();
         let device = self.device.as_ref().map_or("", |d| d.name.as_str());
         let mut differences: Vec<String> = match (now, subject) {
-            (Some(now), Some(subject)) => {
-                folder::differences(now, device, subject).into_iter().map(String::from).collect()
-            }
+            (Some(now), Some(subject)) => folder::differences(now, device, subject)
+                .into_iter()
+                .map(String::from)
+                .collect(),
             _ => Vec::new(),
         };
-        let swept = data.as_ref().and_then(|d| d.samples.get(self.chart.choice.subject));
+        let swept = data
+            .as_ref()
+            .and_then(|d| d.samples.get(self.chart.choice.subject));
         differences.extend(swept.and_then(|swept| self.chart.live.reference_differs(swept)));
         let title = self.chart.choice.metric.axis();
         let lives = [0, 1].map(|side| self.chart.live.dot(side, self.sent_number));
@@ -75,18 +83,25 @@ impl Workbench {
             live: lives.each_ref().map(Option::as_ref),
             title: &title,
         };
-        let name = format!("{:?} {:?}", self.chart.folder.as_ref().map(|f| &f.path), self.chart.choice);
+        let name = format!(
+            "{:?} {:?}",
+            self.chart.folder.as_ref().map(|f| &f.path),
+            self.chart.choice
+        );
         let drawn = plot::show(ui, &name, height, &shown);
         if !differences.is_empty() {
             let text = format!("the sweep differs: {}", differences.join(", "));
-            ui.weak(text)
-                .on_hover_text("Errors of different pictures cannot be compared. A click on a dot goes there.");
+            ui.weak(text).on_hover_text(
+                "Errors of different pictures cannot be compared. A click on a dot goes there.",
+            );
         }
         self.live_rows(ui, &title, &lives);
         let Some(data) = data else { return };
         let scored = drawn.hovered.map(|i| &self.chart.chosen.dots[i]);
         if let Some((dot, error)) = scored.and_then(|s| Some((data.dots.get(s.index)?, s.error))) {
-            self.chart.thumbnail.show(&drawn.response, dot, &title, error, &self.wake);
+            self.chart
+                .thumbnail
+                .show(&drawn.response, dot, &title, error, &self.wake);
             if drawn.response.clicked() {
                 self.load_point(dot);
             }
@@ -95,18 +110,35 @@ impl Workbench {
     }
 
     fn folder_row(&mut self, ui: &mut Ui) {
-        let folders = self.chart.folders.get_or_insert_with(|| folder::list(&self.root)).clone();
+        let folders = self
+            .chart
+            .folders
+            .get_or_insert_with(|| folder::list(&self.root))
+            .clone();
         let mut chosen = None;
         ui.horizontal(|ui| {
-            let name = self.chart.folder.as_ref().map_or("no sweep".into(), |f| folder::name(&f.path));
-            egui::ComboBox::from_id_salt("sweep").selected_text(format!("sweep: {name}")).show_ui(ui, |ui| {
-                for path in &folders {
-                    if ui.selectable_label(folder::name(path) == name, folder::name(path)).clicked() {
-                        chosen = Some(path.clone());
+            let name = self
+                .chart
+                .folder
+                .as_ref()
+                .map_or("no sweep".into(), |f| folder::name(&f.path));
+            egui::ComboBox::from_id_salt("sweep")
+                .selected_text(format!("sweep: {name}"))
+                .show_ui(ui, |ui| {
+                    for path in &folders {
+                        if ui
+                            .selectable_label(folder::name(path) == name, folder::name(path))
+                            .clicked()
+                        {
+                            chosen = Some(path.clone());
+                        }
                     }
-                }
-            });
-            if ui.small_button("refresh").on_hover_text("Reads captures/sweeps and the sweep again").clicked() {
+                });
+            if ui
+                .small_button("refresh")
+                .on_hover_text("Reads captures/sweeps and the sweep again")
+                .clicked()
+            {
                 self.chart.folders = None;
                 chosen = self.chart.folder.as_ref().map(|f| f.path.clone());
             }
@@ -121,8 +153,7 @@ impl Workbench {
         }
         match self.chart.folder.as_ref().map(|f| &f.data) {
             None => {
-                let text =
-                    "There is no sweep in captures/sweeps yet: `conelab sweep configs/sweeps/cones.ron` makes one.";
+                let text = "There is no sweep in captures/sweeps yet: `conelab sweep configs/sweeps/cones.ron` makes one.";
                 ui.weak(text);
             }
             Some(None) => {
@@ -137,46 +168,78 @@ impl Workbench {
 
     fn choice_row(&mut self, ui: &mut Ui, data: Option<&Data>) {
         // The subject that is shown, unless another one was asked for.
-        if let (Some(data), Some(now), false) = (data, self.chart.live.subject(), self.chart.by_hand) {
+        if let (Some(data), Some(now), false) =
+            (data, self.chart.live.subject(), self.chart.by_hand)
+        {
             let device = self.device.as_ref().map_or("", |d| d.name.as_str());
             let fits = |key: &_| folder::differences(now, device, key).is_empty();
-            self.chart.choice.subject = data.keys.iter().position(fits).unwrap_or(self.chart.choice.subject);
+            self.chart.choice.subject = data
+                .keys
+                .iter()
+                .position(fits)
+                .unwrap_or(self.chart.choice.subject);
         }
         let graph = self.sides[0].info.as_ref().map(|info| &info.graph);
-        let own = graph.map_or(Vec::new(), |graph| parts_of(graph).into_iter().map(|p| p.name).collect());
+        let own = graph.map_or(Vec::new(), |graph| {
+            parts_of(graph).into_iter().map(|p| p.name).collect()
+        });
         let choice = &mut self.chart.choice;
         ui.horizontal_wrapped(|ui| {
-            egui::ComboBox::from_id_salt("part").selected_text(format!("part: {}", choice.part)).show_ui(ui, |ui| {
-                for part in data.map(|d| &d.parts).filter(|p| !p.is_empty()).unwrap_or(&own) {
-                    ui.selectable_value(&mut choice.part, part.clone(), part);
-                }
-            });
+            egui::ComboBox::from_id_salt("part")
+                .selected_text(format!("part: {}", choice.part))
+                .show_ui(ui, |ui| {
+                    for part in data
+                        .map(|d| &d.parts)
+                        .filter(|p| !p.is_empty())
+                        .unwrap_or(&own)
+                    {
+                        ui.selectable_value(&mut choice.part, part.clone(), part);
+                    }
+                });
             let title = choice.metric.axis();
-            egui::ComboBox::from_id_salt("metric").selected_text(format!("error: {title}")).show_ui(ui, |ui| {
-                for metric in Metric::ranking() {
-                    ui.selectable_value(&mut choice.metric, metric, metric.axis());
-                }
-            });
+            egui::ComboBox::from_id_salt("metric")
+                .selected_text(format!("error: {title}"))
+                .show_ui(ui, |ui| {
+                    for metric in Metric::ranking() {
+                        ui.selectable_value(&mut choice.metric, metric, metric.axis());
+                    }
+                });
         });
-        let Some(data) = data.filter(|d| d.subjects.len() > 1) else { return };
+        let Some(data) = data.filter(|d| d.subjects.len() > 1) else {
+            return;
+        };
         let name = |i: usize| data.subjects.get(i).cloned().unwrap_or_default();
-        let menu = egui::ComboBox::from_id_salt("subject").selected_text(name(choice.subject)).width(280.0);
+        let menu = egui::ComboBox::from_id_salt("subject")
+            .selected_text(name(choice.subject))
+            .width(280.0);
         let menu = menu.show_ui(ui, |ui| {
             for i in 0..data.subjects.len() {
-                self.chart.by_hand |= ui.selectable_value(&mut choice.subject, i, name(i)).clicked();
+                self.chart.by_hand |= ui
+                    .selectable_value(&mut choice.subject, i, name(i))
+                    .clicked();
             }
         });
-        named(&menu.response, egui::WidgetType::ComboBox, "scene, camera and size");
+        named(
+            &menu.response,
+            egui::WidgetType::ComboBox,
+            "scene, camera and size",
+        );
     }
 
     /// Shows a point's experiment in side A, at its size: then its error can be compared.
     fn load_point(&mut self, dot: &Dot) {
-        let Some(folder) = &self.chart.folder else { return };
+        let Some(folder) = &self.chart.folder else {
+            return;
+        };
         let short: String = dot.id.chars().take(8).collect();
         let name = format!("{}-{short}", folder::name(&folder.path));
         match Experiment::from_text(&folder.path.join(format!("{name}.ron")), &dot.experiment) {
             Ok(mut experiment) => {
-                if let Some(info) = self.sides[0].info.as_ref().filter(|o| runs(&o.graph.name, &experiment.graph)) {
+                if let Some(info) = self.sides[0]
+                    .info
+                    .as_ref()
+                    .filter(|o| runs(&o.graph.name, &experiment.graph))
+                {
                     without_defaults(&mut experiment, &info.graph.params);
                 }
                 self.fixed_size = Some(experiment.size);
@@ -245,7 +308,11 @@ fn without_defaults(experiment: &mut Experiment, defaults: &Params) {
 }
 
 fn experiment_params(experiment: &Experiment) -> Value {
-    experiment.params.iter().map(|(name, text)| (name.value.clone(), Value::from(text.clone()))).collect()
+    experiment
+        .params
+        .iter()
+        .map(|(name, text)| (name.value.clone(), Value::from(text.clone())))
+        .collect()
 }
 
 /// The data of the folder that is shown.

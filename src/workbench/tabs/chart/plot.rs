@@ -9,7 +9,10 @@ use egui_plot::{GridInput, GridMark, Line, MarkerShape, Plot, PlotPoint, PlotPoi
 const DOT: Color32 = Color32::from_rgb(120, 160, 215);
 const FRONT: Color32 = Color32::from_rgb(235, 100, 80);
 /// Colours of A and B.
-pub const LIVE: [Color32; 2] = [Color32::from_rgb(255, 215, 90), Color32::from_rgb(120, 225, 140)];
+pub const LIVE: [Color32; 2] = [
+    Color32::from_rgb(255, 215, 90),
+    Color32::from_rgb(120, 225, 140),
+];
 /// How near to a dot the pointer must be, points.
 const REACH: f32 = 8.0;
 /// Least distance of grid lines, points.
@@ -54,11 +57,31 @@ pub struct Drawn {
 pub fn show(ui: &mut Ui, name: &str, height: f32, shown: &Shown<'_>) -> Drawn {
     let lives = || shown.live.iter().flatten();
     // A perfect point has no logarithm: it is drawn at the bottom, a tenth below the others.
-    let errors = shown.chosen.dots.iter().map(|d| d.error).chain(lives().map(|l| l.error));
-    let least = errors.filter(|e| *e > 0.0).fold(f64::INFINITY, f64::min).min(1.0) / 10.0;
+    let errors = shown
+        .chosen
+        .dots
+        .iter()
+        .map(|d| d.error)
+        .chain(lives().map(|l| l.error));
+    let least = errors
+        .filter(|e| *e > 0.0)
+        .fold(f64::INFINITY, f64::min)
+        .min(1.0)
+        / 10.0;
     let place = |ms: f64, error: f64| [ms.log10(), error.max(least).log10()];
-    let dots: Vec<[f64; 2]> = shown.chosen.dots.iter().map(|d| place(d.ms, d.error)).collect();
-    let dim = |color: Color32| if shown.fits { color } else { color.gamma_multiply(0.4) };
+    let dots: Vec<[f64; 2]> = shown
+        .chosen
+        .dots
+        .iter()
+        .map(|d| place(d.ms, d.error))
+        .collect();
+    let dim = |color: Color32| {
+        if shown.fits {
+            color
+        } else {
+            color.gamma_multiply(0.4)
+        }
+    };
 
     let title = format!("{} (log)", shown.title);
     let plot = Plot::new(("error against time", name))
@@ -81,14 +104,27 @@ pub fn show(ui: &mut Ui, name: &str, height: f32, shown: &Shown<'_>) -> Drawn {
             steps.extend(steps.last().map(|last| [at[0], last[1]]));
             steps.push(at);
         }
-        plot.line(Line::new("Pareto front", steps).color(dim(FRONT)).width(1.0).allow_hover(false));
+        plot.line(
+            Line::new("Pareto front", steps)
+                .color(dim(FRONT))
+                .width(1.0)
+                .allow_hover(false),
+        );
         let part = |wanted: bool, noisy: bool| -> PlotPoints<'static> {
-            let fits = |i: &usize| shown.chosen.on_front[*i] == wanted && shown.chosen.dots[*i].noisy == noisy;
-            (0..dots.len()).filter(fits).map(|i| dots[i]).collect::<Vec<_>>().into()
+            let fits = |i: &usize| {
+                shown.chosen.on_front[*i] == wanted && shown.chosen.dots[*i].noisy == noisy
+            };
+            (0..dots.len())
+                .filter(fits)
+                .map(|i| dots[i])
+                .collect::<Vec<_>>()
+                .into()
         };
         for (wanted, color, radius) in [(false, DOT, 3.0), (true, FRONT, 4.0)] {
             for noisy in [false, true] {
-                let points = Points::new("points", part(wanted, noisy)).color(dim(color)).radius(radius);
+                let points = Points::new("points", part(wanted, noisy))
+                    .color(dim(color))
+                    .radius(radius);
                 plot.points(points.filled(!noisy).allow_hover(false));
             }
         }
@@ -98,26 +134,51 @@ pub fn show(ui: &mut Ui, name: &str, height: f32, shown: &Shown<'_>) -> Drawn {
             let mut trail: Vec<[f64; 2]> = live.trail.iter().map(|p| place(p.0, p.1)).collect();
             trail.push(at);
             let faint = color.gamma_multiply(0.45);
-            plot.points(Points::new("trail", trail.clone()).color(faint).radius(2.0).allow_hover(false));
-            plot.line(Line::new("trail", trail).color(faint).width(1.0).allow_hover(false));
-            let marker = Points::new("live", vec![at]).shape(MarkerShape::Diamond).color(color).radius(8.0);
+            plot.points(
+                Points::new("trail", trail.clone())
+                    .color(faint)
+                    .radius(2.0)
+                    .allow_hover(false),
+            );
+            plot.line(
+                Line::new("trail", trail)
+                    .color(faint)
+                    .width(1.0)
+                    .allow_hover(false),
+            );
+            let marker = Points::new("live", vec![at])
+                .shape(MarkerShape::Diamond)
+                .color(color)
+                .radius(8.0);
             plot.points(marker.filled(live.fresh).allow_hover(false));
         }
     });
     let transform = response.transform;
-    let places: Vec<Pos2> = dots.iter().map(|d| transform.position_from_point(&PlotPoint::new(d[0], d[1]))).collect();
+    let places: Vec<Pos2> = dots
+        .iter()
+        .map(|d| transform.position_from_point(&PlotPoint::new(d[0], d[1])))
+        .collect();
     let hovered = response.response.hover_pos().and_then(|at| {
-        let near = places.iter().enumerate().map(|(i, p)| (p.distance(at), i)).filter(|d| d.0 <= REACH);
+        let near = places
+            .iter()
+            .enumerate()
+            .map(|(i, p)| (p.distance(at), i))
+            .filter(|d| d.0 <= REACH);
         near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|d| d.1)
     });
-    Drawn { places, hovered, response: response.response }
+    Drawn {
+        places,
+        hovered,
+        response: response.response,
+    }
 }
 
 /// Round numbers in a range of logarithms; those are labelled that have so many points of room.
 fn marks(input: GridInput, room: f64) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     // Far zoomed out, or before there is anything to show.
-    let far = !(low.is_finite() && high.is_finite()) || high - low > 16.0 || low < -200.0 || high > 200.0;
+    let far =
+        !(low.is_finite() && high.is_finite()) || high - low > 16.0 || low < -200.0 || high > 200.0;
     if far || high <= low {
         return Vec::new();
     }
@@ -125,10 +186,16 @@ fn marks(input: GridInput, room: f64) -> Vec<GridMark> {
     let (unlabelled, labelled) = (input.base_step_size, 1e3 * input.base_step_size);
     let gap = room / f64::from(LEAST) * input.base_step_size;
     let mut last = f64::NEG_INFINITY;
-    let values = ticks((10f64.powf(low), 10f64.powf(high))).into_iter().map(f64::log10);
+    let values = ticks((10f64.powf(low), 10f64.powf(high)))
+        .into_iter()
+        .map(f64::log10);
     values
         .map(|value| {
-            let step_size = if value - last < gap { unlabelled } else { labelled };
+            let step_size = if value - last < gap {
+                unlabelled
+            } else {
+                labelled
+            };
             last = if step_size == labelled { value } else { last };
             GridMark { value, step_size }
         })

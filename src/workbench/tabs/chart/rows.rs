@@ -10,22 +10,41 @@ impl Workbench {
     /// What is known of A and B, and what can be done about what is not.
     pub(super) fn live_rows(&mut self, ui: &mut Ui, title: &str, lives: &[Option<Live>; 2]) {
         let mut missing = false;
-        for (side, live) in lives.iter().enumerate().filter(|s| self.desired.sides[s.0].is_some()) {
+        for (side, live) in lives
+            .iter()
+            .enumerate()
+            .filter(|s| self.desired.sides[s.0].is_some())
+        {
             let state = &self.chart.live.sides[side];
             let name = ["A", "B"][side];
             match state.error.as_ref().map(|j| (&j.query, &j.result)) {
-                None if self.desired.clock.playing => {
-                    drop(ui.weak(format!("{name}: its error is measured when time stands still")))
+                None if self.desired.clock.playing => drop(ui.weak(format!(
+                    "{name}: its error is measured when time stands still"
+                ))),
+                None if state.is_asked() => {
+                    drop(ui.weak(format!("{name}: its error is being measured")))
                 }
-                None if state.is_asked() => drop(ui.weak(format!("{name}: its error is being measured"))),
-                None => drop(ui.weak(format!("{name}: its error is measured once the picture stands still"))),
+                None => drop(ui.weak(format!(
+                    "{name}: its error is measured once the picture stands still"
+                ))),
                 Some((_, Err(why))) => drop(ui.weak(format!("{name}: {why}"))),
                 Some((query, Ok(measured))) => match (&measured.error, live) {
                     (Some(error), Some(live)) => {
-                        let old = if live.fresh { "" } else { " (of the picture before)" };
+                        let old = if live.fresh {
+                            ""
+                        } else {
+                            " (of the picture before)"
+                        };
                         let noisy = query.metric.within(error.error, error.noise);
-                        let noisy = if noisy { ", within the reference's noise" } else { "" };
-                        let text = format!("{name}: {:.3} ms, {title} {:.4e}{noisy}{old}", live.ms, error.error);
+                        let noisy = if noisy {
+                            ", within the reference's noise"
+                        } else {
+                            ""
+                        };
+                        let text = format!(
+                            "{name}: {:.3} ms, {title} {:.4e}{noisy}{old}",
+                            live.ms, error.error
+                        );
                         ui.colored_label(LIVE[side], text).on_hover_text(format!(
                             "Median of {} frames since the last change; `keep rendering` measures on. Reference: \
                                  {}, {} samples a pixel; relMSE of its halves {:.2e}.",
@@ -35,7 +54,9 @@ impl Workbench {
                             error.noise.relmse
                         ));
                     }
-                    (Some(_), None) => drop(ui.weak(format!("{name}: the metric is not defined here"))),
+                    (Some(_), None) => {
+                        drop(ui.weak(format!("{name}: the metric is not defined here")))
+                    }
                     (None, _) => {
                         missing = true;
                         let (w, h) = measured.subject.size;
@@ -56,13 +77,36 @@ impl Workbench {
         if let Some(gather) = &mut self.chart.live.gather {
             ui.horizontal(|ui| {
                 let (done, of) = gather.state.map_or((0, 0), |g| (g.samples, g.goal));
-                let part = if of == 0 { 0.0 } else { done as f32 / of as f32 };
-                let text = if of == 0 { "opening a device".into() } else { format!("{done} of {of} samples") };
-                let left = gather.left().map_or(String::new(), |left| format!(", {}", minutes(left)));
-                ui.add(ProgressBar::new(part).desired_width(230.0).text(format!("{text}{left}")));
-                let cancel = Button::new(if gather.cancelled { "stopping" } else { "cancel" }).small();
+                let part = if of == 0 {
+                    0.0
+                } else {
+                    done as f32 / of as f32
+                };
+                let text = if of == 0 {
+                    "opening a device".into()
+                } else {
+                    format!("{done} of {of} samples")
+                };
+                let left = gather
+                    .left()
+                    .map_or(String::new(), |left| format!(", {}", minutes(left)));
+                ui.add(
+                    ProgressBar::new(part)
+                        .desired_width(230.0)
+                        .text(format!("{text}{left}")),
+                );
+                let cancel = Button::new(if gather.cancelled {
+                    "stopping"
+                } else {
+                    "cancel"
+                })
+                .small();
                 let about = "Stops; whole blocks of 32 samples are kept";
-                if ui.add_enabled(!gather.cancelled, cancel).on_hover_text(about).clicked() {
+                if ui
+                    .add_enabled(!gather.cancelled, cancel)
+                    .on_hover_text(about)
+                    .clicked()
+                {
                     gather.cancel();
                 }
             });
@@ -91,14 +135,20 @@ impl Workbench {
     /// The size of the picture: that of the sweep, that of the panel, or as it is.
     fn size_row(&mut self, ui: &mut Ui) {
         let (w, h) = self.desired.size;
-        let sweeps = self.chart.data().and_then(|d| d.keys.get(self.chart.choice.subject)).map(|k| k.0.size);
+        let sweeps = self
+            .chart
+            .data()
+            .and_then(|d| d.keys.get(self.chart.choice.subject))
+            .map(|k| k.0.size);
         ui.horizontal_wrapped(|ui| {
             ui.weak(match self.fixed_size {
                 Some(_) => format!("picture: {w}x{h}"),
                 None => format!("picture: {w}x{h}, as large as the panel; errors are of one size"),
             });
             if let Some(size) = sweeps.filter(|s| *s != (w, h))
-                && ui.small_button(format!("{}x{} as the sweep", size.0, size.1)).clicked()
+                && ui
+                    .small_button(format!("{}x{} as the sweep", size.0, size.1))
+                    .clicked()
             {
                 self.fixed_size = Some(size);
             }
@@ -118,5 +168,9 @@ fn minutes(time: Duration) -> String {
 }
 
 fn bounces(number: u32) -> String {
-    if number == 1 { "1 bounce".into() } else { format!("{number} bounces") }
+    if number == 1 {
+        "1 bounce".into()
+    } else {
+        format!("{number} bounces")
+    }
 }

@@ -18,16 +18,31 @@ pub struct Thumbnail {
 
 impl Default for Thumbnail {
     fn default() -> Thumbnail {
-        Thumbnail { of: String::new(), texture: None, made: unbounded() }
+        Thumbnail {
+            of: String::new(),
+            texture: None,
+            made: unbounded(),
+        }
     }
 }
 
 impl Thumbnail {
     /// Shows a dot at the pointer: picture, parameters, time, error.
-    pub fn show(&mut self, chart: &Response, dot: &Dot, title: &str, error: f64, wake: &Arc<dyn Fn() + Send + Sync>) {
+    pub fn show(
+        &mut self,
+        chart: &Response,
+        dot: &Dot,
+        title: &str,
+        error: f64,
+        wake: &Arc<dyn Fn() + Send + Sync>,
+    ) {
         for (id, image) in self.made.1.try_iter() {
             if id == self.of {
-                self.texture = Some(chart.ctx.load_texture("dot", image, egui::TextureOptions::LINEAR));
+                self.texture = Some(chart.ctx.load_texture(
+                    "dot",
+                    image,
+                    egui::TextureOptions::LINEAR,
+                ));
             }
         }
         if self.of != dot.id {
@@ -62,10 +77,15 @@ impl Thumbnail {
 
 /// A picture that comes from a file: bounded.
 fn decoded(bytes: &[u8]) -> Option<ColorImage> {
-    let mut reader = image::ImageReader::new(std::io::Cursor::new(bytes)).with_guessed_format().ok()?;
+    let mut reader = image::ImageReader::new(std::io::Cursor::new(bytes))
+        .with_guessed_format()
+        .ok()?;
     let mut limits = image::Limits::default();
     (limits.max_image_width, limits.max_image_height) = (Some(4096), Some(4096));
     reader.limits(limits);
     let image = reader.decode().ok()?.thumbnail(256, 256).to_rgba8();
-    Some(ColorImage::from_rgba_unmultiplied([image.width() as usize, image.height() as usize], &image))
+    Some(ColorImage::from_rgba_unmultiplied(
+        [image.width() as usize, image.height() as usize],
+        &image,
+    ))
 }

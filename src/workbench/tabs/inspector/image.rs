@@ -35,7 +35,13 @@ pub struct Tone {
 
 impl Default for Tone {
     fn default() -> Self {
-        Tone { channel: Channel::Rgb, low: 0.0, high: 1.0, stops: 0.0, raw: false }
+        Tone {
+            channel: Channel::Rgb,
+            low: 0.0,
+            high: 1.0,
+            stops: 0.0,
+            raw: false,
+        }
     }
 }
 
@@ -63,17 +69,25 @@ impl Decoded {
     pub fn new(target: InspectTarget, texels: Texels) -> Decoded {
         let floats = texels.floats();
         let [width, height, depth] = texels.extent;
-        Decoded { target, size: [width, height * depth], format: texels.format, floats, bytes: texels.bytes }
+        Decoded {
+            target,
+            size: [width, height * depth],
+            format: texels.format,
+            floats,
+            bytes: texels.bytes,
+        }
     }
 
     /// RGBA, 8 bits each; what is not a number is magenta, what is infinite cyan.
     pub fn image(&self, tone: &Tone) -> Vec<u8> {
         let mut out = vec![0; self.floats.len() * 4];
-        out.par_chunks_mut(4 << 12).zip(self.floats.par_chunks(1 << 12)).for_each(|(out, floats)| {
-            for (out, v) in out.chunks_exact_mut(4).zip(floats) {
-                out.copy_from_slice(&pixel(v, tone, self.format.count));
-            }
-        });
+        out.par_chunks_mut(4 << 12)
+            .zip(self.floats.par_chunks(1 << 12))
+            .for_each(|(out, floats)| {
+                for (out, v) in out.chunks_exact_mut(4).zip(floats) {
+                    out.copy_from_slice(&pixel(v, tone, self.format.count));
+                }
+            });
         out
     }
 
@@ -85,8 +99,10 @@ impl Decoded {
         let index = y as usize * self.size[0] as usize + x as usize;
         let (f, count) = (self.format, self.format.count as usize);
         let bytes = f.bytes as usize;
-        let (Some(raw), Some(floats)) = (self.bytes.get(index * bytes..(index + 1) * bytes), self.floats.get(index))
-        else {
+        let (Some(raw), Some(floats)) = (
+            self.bytes.get(index * bytes..(index + 1) * bytes),
+            self.floats.get(index),
+        ) else {
             return Vec::new();
         };
         let whole = |i: usize| -> u32 {
@@ -98,7 +114,9 @@ impl Decoded {
             .map(|i| match f.channels {
                 Channels::Uint => whole(i).to_string(),
                 Channels::Int => whole(i).cast_signed().to_string(),
-                _ if f.name.starts_with("rgba8") || matches!(f.name, "r8" | "rg8" | "rgba16" | "d16") => {
+                _ if f.name.starts_with("rgba8")
+                    || matches!(f.name, "r8" | "rg8" | "rgba16" | "d16") =>
+                {
                     format!("{} ({})", floats[i], whole(i))
                 }
                 _ => floats[i].to_string(),
@@ -111,7 +129,11 @@ impl Decoded {
 pub fn upright(texels: Texels, axis: usize) -> Texels {
     let [width, height, _] = texels.extent.map(|n| n as usize);
     let size = texels.format.bytes as usize;
-    let (out_width, out_height) = if axis == 0 { (height, width) } else { (width, height) };
+    let (out_width, out_height) = if axis == 0 {
+        (height, width)
+    } else {
+        (width, height)
+    };
     if axis == 1 || texels.bytes.len() != width * height * size {
         return texels;
     }
@@ -119,11 +141,19 @@ pub fn upright(texels: Texels, axis: usize) -> Texels {
     for row in 0..out_height {
         let y = out_height - 1 - row;
         for column in 0..out_width {
-            let index = if axis == 0 { column * width + y } else { y * width + column };
+            let index = if axis == 0 {
+                column * width + y
+            } else {
+                y * width + column
+            };
             bytes.extend_from_slice(&texels.bytes[index * size..(index + 1) * size]);
         }
     }
-    Texels { extent: [out_width as u32, out_height as u32, 1], bytes, ..texels }
+    Texels {
+        extent: [out_width as u32, out_height as u32, 1],
+        bytes,
+        ..texels
+    }
 }
 
 /// Position in the texture of a texel of the picture, which is `height` texels high: two numbers, three for a volume.
@@ -157,7 +187,11 @@ fn pixel(v: &[f32; 4], tone: &Tone, count: u32) -> [u8; 4] {
     }
     let range = tone.high - tone.low;
     // A range of nothing is a threshold.
-    let scale = if range == 0.0 { f32::MAX } else { tone.stops.exp2() / range };
+    let scale = if range == 0.0 {
+        f32::MAX
+    } else {
+        tone.stops.exp2() / range
+    };
     let level = |x: f32| {
         let x = ((x - tone.low) * scale).clamp(0.0, 1.0);
         let x = if tone.raw { x } else { encode(x) };
@@ -168,7 +202,11 @@ fn pixel(v: &[f32; 4], tone: &Tone, count: u32) -> [u8; 4] {
 
 /// The transfer function of sRGB (IEC 61966-2-1).
 fn encode(x: f32) -> f32 {
-    if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 }
+    if x <= 0.003_130_8 {
+        12.92 * x
+    } else {
+        1.055 * x.powf(1.0 / 2.4) - 0.055
+    }
 }
 
 #[cfg(test)]
@@ -176,23 +214,51 @@ pub(super) mod tests {
     use super::*;
 
     pub fn decoded(name: &str, size: [u32; 2], bytes: Vec<u8>) -> Decoded {
-        let target = InspectTarget { side: 0, texture: "t".into(), mip: 0, layer: 0, axis: 2, slice: 0 };
+        let target = InspectTarget {
+            side: 0,
+            texture: "t".into(),
+            mip: 0,
+            layer: 0,
+            axis: 2,
+            slice: 0,
+        };
         let format = Format::named(name).unwrap();
-        Decoded::new(target, Texels { extent: [size[0], size[1], 1], format, bytes })
+        Decoded::new(
+            target,
+            Texels {
+                extent: [size[0], size[1], 1],
+                format,
+                bytes,
+            },
+        )
     }
 
     pub fn floats(list: &[[f32; 4]]) -> Decoded {
-        let bytes = list.iter().flatten().flat_map(|v| v.to_ne_bytes()).collect();
+        let bytes = list
+            .iter()
+            .flatten()
+            .flat_map(|v| v.to_ne_bytes())
+            .collect();
         decoded("rgba32f", [list.len() as u32, 1], bytes)
     }
 
     fn tone(channel: Channel, low: f32, high: f32, stops: f32) -> Tone {
-        Tone { channel, low, high, stops, raw: true }
+        Tone {
+            channel,
+            low,
+            high,
+            stops,
+            raw: true,
+        }
     }
 
     #[test]
     fn what_is_no_number_is_seen() {
-        let d = floats(&[[f32::NAN, 0.0, 0.0, 1.0], [0.0, f32::NEG_INFINITY, 0.0, 1.0], [0.0, 0.0, 0.0, f32::NAN]]);
+        let d = floats(&[
+            [f32::NAN, 0.0, 0.0, 1.0],
+            [0.0, f32::NEG_INFINITY, 0.0, 1.0],
+            [0.0, 0.0, 0.0, f32::NAN],
+        ]);
         let image = d.image(&Tone::default());
         assert_eq!(image, [NAN, INFINITE, [0, 0, 0, 255]].concat());
         let image = d.image(&tone(Channel::One(3), 0.0, 1.0, 0.0));
@@ -202,34 +268,78 @@ pub(super) mod tests {
     #[test]
     fn range_and_exposure() {
         let d = floats(&[[2.0, 3.0, 4.0, 0.0], [1.0, 2.5, 9.0, 0.0]]);
-        assert_eq!(d.image(&tone(Channel::Rgb, 2.0, 4.0, 0.0)), [0, 128, 255, 255, 0, 64, 255, 255]);
-        assert_eq!(d.image(&tone(Channel::Rgb, 2.0, 4.0, 1.0)), [0, 255, 255, 255, 0, 128, 255, 255]);
-        assert_eq!(d.image(&tone(Channel::One(1), 2.0, 4.0, -1.0))[..4], [64, 64, 64, 255]);
+        assert_eq!(
+            d.image(&tone(Channel::Rgb, 2.0, 4.0, 0.0)),
+            [0, 128, 255, 255, 0, 64, 255, 255]
+        );
+        assert_eq!(
+            d.image(&tone(Channel::Rgb, 2.0, 4.0, 1.0)),
+            [0, 255, 255, 255, 0, 128, 255, 255]
+        );
+        assert_eq!(
+            d.image(&tone(Channel::One(1), 2.0, 4.0, -1.0))[..4],
+            [64, 64, 64, 255]
+        );
         // A range turned around shows the negative.
-        assert_eq!(d.image(&tone(Channel::Rgb, 4.0, 2.0, 0.0))[..3], [255, 128, 0]);
-        assert_eq!(d.image(&tone(Channel::Rgb, 3.0, 3.0, 0.0))[..3], [0, 0, 255]);
+        assert_eq!(
+            d.image(&tone(Channel::Rgb, 4.0, 2.0, 0.0))[..3],
+            [255, 128, 0]
+        );
+        assert_eq!(
+            d.image(&tone(Channel::Rgb, 3.0, 3.0, 0.0))[..3],
+            [0, 0, 255]
+        );
         let half = floats(&[[0.214_041_14; 4]]);
         assert_eq!(half.image(&Tone::default())[..3], [128; 3]);
-        assert_eq!(half.image(&Tone { channel: Channel::Luminance, ..Tone::default() })[..3], [128; 3]);
+        assert_eq!(
+            half.image(&Tone {
+                channel: Channel::Luminance,
+                ..Tone::default()
+            })[..3],
+            [128; 3]
+        );
     }
 
     #[test]
     fn integers_stay_integers() {
         let word = (1 << 24) + 1_u32;
-        let d = decoded("r32ui", [2, 1], [word, u32::MAX].iter().flat_map(|v| v.to_ne_bytes()).collect());
-        assert_eq!((d.values(0, 0), d.values(1, 0)), (vec!["16777217".to_string()], vec!["4294967295".to_string()]));
+        let d = decoded(
+            "r32ui",
+            [2, 1],
+            [word, u32::MAX]
+                .iter()
+                .flat_map(|v| v.to_ne_bytes())
+                .collect(),
+        );
+        assert_eq!(
+            (d.values(0, 0), d.values(1, 0)),
+            (vec!["16777217".to_string()], vec!["4294967295".to_string()])
+        );
         let d = decoded("r32i", [1, 1], (-5_i32).to_ne_bytes().to_vec());
         assert_eq!(d.values(0, 0), ["-5"]);
         let d = decoded("rgba8ui", [1, 1], vec![1, 2, 3, 255]);
         assert_eq!(d.values(0, 0), ["1", "2", "3", "255"]);
         let d = decoded("r16ui", [1, 1], 513_u16.to_ne_bytes().to_vec());
-        assert_eq!((d.values(0, 0), d.values(1, 0).len(), d.values(0, 1).len()), (vec!["513".to_string()], 0, 0));
-        assert_eq!(decoded("rg8", [1, 1], vec![255, 0]).values(0, 0), ["1 (255)", "0 (0)"]);
+        assert_eq!(
+            (d.values(0, 0), d.values(1, 0).len(), d.values(0, 1).len()),
+            (vec!["513".to_string()], 0, 0)
+        );
+        assert_eq!(
+            decoded("rg8", [1, 1], vec![255, 0]).values(0, 0),
+            ["1 (255)", "0 (0)"]
+        );
     }
 
     #[test]
     fn a_slice_knows_where_it_lies() {
-        let target = |axis| InspectTarget { side: 0, texture: "t".into(), mip: 0, layer: 0, axis, slice: 9 };
+        let target = |axis| InspectTarget {
+            side: 0,
+            texture: "t".into(),
+            mip: 0,
+            layer: 0,
+            axis,
+            slice: 9,
+        };
         assert_eq!(texel(&target(0), true, 8, 1, 2), [9, 5, 1]);
         assert_eq!(texel(&target(1), true, 8, 1, 2), [1, 9, 2]);
         assert_eq!(texel(&target(2), true, 8, 1, 2), [1, 5, 9]);
@@ -240,12 +350,22 @@ pub(super) mod tests {
     fn slices_stand_upright() {
         let format = Format::named("r8").unwrap();
         // Two wide, three high: the value is 10 times the row, and the column.
-        let slice = || Texels { extent: [2, 3, 1], format, bytes: vec![0, 1, 10, 11, 20, 21] };
+        let slice = || Texels {
+            extent: [2, 3, 1],
+            format,
+            bytes: vec![0, 1, 10, 11, 20, 21],
+        };
         let front = upright(slice(), 2);
-        assert_eq!((front.extent, front.bytes), ([2, 3, 1], vec![20, 21, 10, 11, 0, 1]));
+        assert_eq!(
+            (front.extent, front.bytes),
+            ([2, 3, 1], vec![20, 21, 10, 11, 0, 1])
+        );
         // Along x columns were y and rows z: the largest y is on top, z goes to the right.
         let side = upright(slice(), 0);
-        assert_eq!((side.extent, side.bytes), ([3, 2, 1], vec![1, 11, 21, 0, 10, 20]));
+        assert_eq!(
+            (side.extent, side.bytes),
+            ([3, 2, 1], vec![1, 11, 21, 0, 10, 20])
+        );
         assert_eq!(upright(slice(), 1).bytes, slice().bytes);
     }
 }

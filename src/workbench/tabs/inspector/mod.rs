@@ -25,7 +25,9 @@ pub(crate) const TAB: Tab = Tab {
         true => workbench.inspected(ui, textures),
         false => workbench.picture(ui, textures),
     },
-    ..Tab::new("Inspect", |workbench, ui, textures| workbench.inspector_tab(ui, textures))
+    ..Tab::new("Inspect", |workbench, ui, textures| {
+        workbench.inspector_tab(ui, textures)
+    })
 };
 
 /// State of this tab.
@@ -45,7 +47,14 @@ pub struct Inspector {
 impl Default for Inspector {
     fn default() -> Self {
         Inspector {
-            target: InspectTarget { side: 0, texture: String::new(), mip: 0, layer: 0, axis: 2, slice: 0 },
+            target: InspectTarget {
+                side: 0,
+                texture: String::new(),
+                mip: 0,
+                layer: 0,
+                axis: 2,
+                slice: 0,
+            },
             in_viewport: true,
             tone: Tone::default(),
             fit: true,
@@ -65,13 +74,30 @@ impl Inspector {
             self.pan_zoom = viewport::PanZoom::default();
         }
         // A slice that no volume has becomes the middle one.
-        self.target = InspectTarget { side, texture, mip: 0, layer: 0, axis: self.target.axis, slice: u32::MAX };
+        self.target = InspectTarget {
+            side,
+            texture,
+            mip: 0,
+            layer: 0,
+            axis: self.target.axis,
+            slice: u32::MAX,
+        };
     }
 
     /// Takes in the texels that were asked for.
     /// Those of a volume are a slice.
-    pub fn note(&mut self, target: InspectTarget, texels: Texels, volume: bool, wake: &Arc<dyn Fn() + Send + Sync>) {
-        let texels = if volume { image::upright(texels, target.axis) } else { texels };
+    pub fn note(
+        &mut self,
+        target: InspectTarget,
+        texels: Texels,
+        volume: bool,
+        wake: &Arc<dyn Fn() + Send + Sync>,
+    ) {
+        let texels = if volume {
+            image::upright(texels, target.axis)
+        } else {
+            texels
+        };
         // What was asked for before the user chose anew would only hold up what is to come.
         if target.texture != self.target.texture || target.side != self.target.side {
             return;
@@ -80,17 +106,26 @@ impl Inspector {
         if fit {
             self.tone = first_tone(&texels, self.tone);
         }
-        self.work.start(Source::New(target, texels), self.tone, fit, wake);
+        self.work
+            .start(Source::New(target, texels), self.tone, fit, wake);
     }
 
     /// New pixels to show, if there are.
-    pub fn take(&mut self, wake: &Arc<dyn Fn() + Send + Sync>) -> Option<crate::workbench::NewPixels> {
+    pub fn take(
+        &mut self,
+        wake: &Arc<dyn Fn() + Send + Sync>,
+    ) -> Option<crate::workbench::NewPixels> {
         let done = self.work.take(wake)?;
         if done.fitted {
             (self.tone.low, self.tone.high) = (done.tone.low, done.tone.high);
         }
         let (size, bytes) = (done.decoded.size, Some(done.image.clone()));
-        let pixels = crate::workbench::NewPixels { picture: INSPECTOR, size, bytes, shared: None };
+        let pixels = crate::workbench::NewPixels {
+            picture: INSPECTOR,
+            size,
+            bytes,
+            shared: None,
+        };
         self.shown = Some(done);
         Some(pixels)
     }
@@ -115,10 +150,19 @@ impl Inspector {
 /// How texels of that format are shown at first.
 fn first_tone(texels: &Texels, tone: Tone) -> Tone {
     let f = texels.format;
-    let channel = if f.count == 1 { Channel::One(0) } else { Channel::Rgb };
+    let channel = if f.count == 1 {
+        Channel::One(0)
+    } else {
+        Channel::Rgb
+    };
     // Bytes are mostly encoded already; depths and integers are no light.
     let raw = f.channels != Channels::Float || f.name.starts_with("rgba8") || f.count < 3;
-    Tone { channel, raw, stops: 0.0, ..tone }
+    Tone {
+        channel,
+        raw,
+        stops: 0.0,
+        ..tone
+    }
 }
 
 impl Workbench {
@@ -144,14 +188,19 @@ impl Workbench {
         };
         self.desired.inspect = Some(self.inspector.target.clone());
         ui.separator();
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            self.tones(ui, &plan);
-            self.numbers(ui);
-            if !self.inspector.in_viewport && self.inspector.shown.is_some() {
-                let size = Vec2::new(ui.available_width(), ui.available_width().max(ui.available_height()));
-                ui.allocate_ui(size, |ui| self.inspected(ui, textures));
-            }
-        });
+        egui::ScrollArea::vertical()
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                self.tones(ui, &plan);
+                self.numbers(ui);
+                if !self.inspector.in_viewport && self.inspector.shown.is_some() {
+                    let size = Vec2::new(
+                        ui.available_width(),
+                        ui.available_width().max(ui.available_height()),
+                    );
+                    ui.allocate_ui(size, |ui| self.inspected(ui, textures));
+                }
+            });
     }
 
     /// Texture, mip, layer or slice.
@@ -167,7 +216,10 @@ impl Workbench {
         let label = describe(info, &self.inspector.target.texture);
         let menu = box_.height(500.0).selected_text(label).show_ui(ui, |ui| {
             for name in &names {
-                if ui.selectable_label(*name == self.inspector.target.texture, describe(info, name)).clicked() {
+                if ui
+                    .selectable_label(*name == self.inspector.target.texture, describe(info, name))
+                    .clicked()
+                {
                     chosen = Some((*name).to_string());
                 }
             }
@@ -191,8 +243,11 @@ impl Workbench {
             let old = target.mip;
             ui.add(Slider::new(&mut target.mip, 0..=last(plan.mips)).text("mip"));
             // The same place of the volume.
-            target.slice =
-                if target.mip > old { target.slice >> (target.mip - old) } else { target.slice << (old - target.mip) };
+            target.slice = if target.mip > old {
+                target.slice >> (target.mip - old)
+            } else {
+                target.slice << (old - target.mip)
+            };
         }
         if plan.layers > 1 {
             ui.add(Slider::new(&mut target.layer, 0..=last(plan.layers)).text("layer"));
@@ -210,7 +265,11 @@ impl Workbench {
             }
             ui.add(Slider::new(&mut target.slice, 0..=size - 1).text("slice"));
         }
-        let waits = self.inspector.shown.as_ref().is_none_or(|s| s.decoded.target != self.inspector.target);
+        let waits = self
+            .inspector
+            .shown
+            .as_ref()
+            .is_none_or(|s| s.decoded.target != self.inspector.target);
         ui.horizontal(|ui| {
             ui.checkbox(&mut self.inspector.in_viewport, "in the viewport")
                 .on_hover_text("Where the render is; else below");
@@ -231,14 +290,22 @@ impl Workbench {
             if plan.format.count >= 2 {
                 ui.selectable_value(&mut tone.channel, Channel::Rgb, "RGB");
             }
-            for (i, name) in ["R", "G", "B", "A"].iter().enumerate().take(plan.format.count as usize) {
+            for (i, name) in ["R", "G", "B", "A"]
+                .iter()
+                .enumerate()
+                .take(plan.format.count as usize)
+            {
                 ui.selectable_value(&mut tone.channel, Channel::One(i), *name);
             }
             if plan.format.count >= 3 {
                 ui.selectable_value(&mut tone.channel, Channel::Luminance, "luminance");
             }
         });
-        ui.add(Slider::new(&mut tone.stops, -12.0..=12.0).step_by(0.1).text("stops"));
+        ui.add(
+            Slider::new(&mut tone.stops, -12.0..=12.0)
+                .step_by(0.1)
+                .text("stops"),
+        );
         ui.horizontal(|ui| {
             let speed = f64::from((tone.high - tone.low).abs()).max(1e-6) * 0.005;
             let field = DragValue::new(&mut tone.low).speed(speed).max_decimals(6);
@@ -246,7 +313,10 @@ impl Workbench {
             ui.label("to");
             let field = DragValue::new(&mut tone.high).speed(speed).max_decimals(6);
             spin(ui, field, "white").on_hover_text("This value is white");
-            fit = ui.button("fit range").on_hover_text("From the least to the greatest finite value").clicked();
+            fit = ui
+                .button("fit range")
+                .on_hover_text("From the least to the greatest finite value")
+                .clicked();
             if ui.button("0 to 1").clicked() {
                 (tone.low, tone.high, tone.stops) = (0.0, 1.0, 0.0);
             }
@@ -260,35 +330,45 @@ impl Workbench {
     }
 
     fn numbers(&mut self, ui: &mut Ui) {
-        let Some(done) = &self.inspector.shown else { return };
+        let Some(done) = &self.inspector.shown else {
+            return;
+        };
         let nan: usize = done.values.iter().map(|v| v.nan).sum();
         let infinite: usize = done.values.iter().map(|v| v.infinite).sum();
         if nan + infinite > 0 {
-            let text = format!("{nan} values are not a number (magenta), {infinite} are infinite (cyan)");
+            let text =
+                format!("{nan} values are not a number (magenta), {infinite} are infinite (cyan)");
             ui.colored_label(Color32::from_rgb(240, 90, 80), text);
         }
         histogram::show(ui, done);
-        egui::Grid::new("values").num_columns(6).striped(true).show(ui, |ui| {
-            for head in ["", "min", "max", "mean", "NaN", "inf"] {
-                ui.weak(head);
-            }
-            ui.end_row();
-            for (name, v) in ["R", "G", "B", "A"].iter().zip(done.values.iter()) {
-                ui.label(*name);
-                if v.count == 0 {
-                    (0..3).for_each(|_| drop(ui.label("-")));
-                } else {
-                    for x in [f64::from(v.min), f64::from(v.max), v.mean()] {
-                        ui.monospace(short_number(x));
-                    }
-                }
-                for n in [v.nan, v.infinite] {
-                    let text = egui::RichText::new(n.to_string()).monospace();
-                    ui.label(if n > 0 { text.color(Color32::from_rgb(240, 90, 80)) } else { text });
+        egui::Grid::new("values")
+            .num_columns(6)
+            .striped(true)
+            .show(ui, |ui| {
+                for head in ["", "min", "max", "mean", "NaN", "inf"] {
+                    ui.weak(head);
                 }
                 ui.end_row();
-            }
-        });
+                for (name, v) in ["R", "G", "B", "A"].iter().zip(done.values.iter()) {
+                    ui.label(*name);
+                    if v.count == 0 {
+                        (0..3).for_each(|_| drop(ui.label("-")));
+                    } else {
+                        for x in [f64::from(v.min), f64::from(v.max), v.mean()] {
+                            ui.monospace(short_number(x));
+                        }
+                    }
+                    for n in [v.nan, v.infinite] {
+                        let text = egui::RichText::new(n.to_string()).monospace();
+                        ui.label(if n > 0 {
+                            text.color(Color32::from_rgb(240, 90, 80))
+                        } else {
+                            text
+                        });
+                    }
+                    ui.end_row();
+                }
+            });
     }
 }
 
@@ -304,10 +384,24 @@ fn short_number(x: f64) -> String {
 /// Name, size and format of a texture.
 fn describe(info: &GraphInfo, name: &str) -> String {
     let index = info.graph.texture(name);
-    let Some(p) = index.and_then(|i| info.textures.get(i)) else { return name.to_string() };
+    let Some(p) = index.and_then(|i| info.textures.get(i)) else {
+        return name.to_string();
+    };
     let [x, y, z] = p.extent;
-    let size = if p.volume { format!("{x}×{y}×{z}") } else { format!("{x}×{y}") };
-    let layers = if p.layers > 1 { format!(", {} layers", p.layers) } else { String::new() };
-    let mips = if p.mips > 1 { format!(", {} mips", p.mips) } else { String::new() };
+    let size = if p.volume {
+        format!("{x}×{y}×{z}")
+    } else {
+        format!("{x}×{y}")
+    };
+    let layers = if p.layers > 1 {
+        format!(", {} layers", p.layers)
+    } else {
+        String::new()
+    };
+    let mips = if p.mips > 1 {
+        format!(", {} mips", p.mips)
+    } else {
+        String::new()
+    };
     format!("{name}  {size} {}{layers}{mips}", p.format.name)
 }

@@ -23,7 +23,14 @@ pub struct Values {
     pub infinite: usize,
 }
 
-const NOTHING: Values = Values { min: f32::INFINITY, max: f32::NEG_INFINITY, sum: 0.0, count: 0, nan: 0, infinite: 0 };
+const NOTHING: Values = Values {
+    min: f32::INFINITY,
+    max: f32::NEG_INFINITY,
+    sum: 0.0,
+    count: 0,
+    nan: 0,
+    infinite: 0,
+};
 
 impl Values {
     /// Mean of the finite values.
@@ -72,7 +79,9 @@ pub fn values(d: &Decoded) -> Vec<Values> {
             part
         })
         .collect();
-    (0..count).map(|i| parts.iter().fold(NOTHING, |all, part| all.join(&part[i]))).collect()
+    (0..count)
+        .map(|i| parts.iter().fold(NOTHING, |all, part| all.join(&part[i])))
+        .collect()
 }
 
 /// How many values of each channel fall into each part of low to high; what lies outside is not counted.
@@ -111,10 +120,17 @@ pub fn fit(tone: &Tone, values: &[Values]) -> Tone {
         _ => values.iter().take(3).collect(),
     };
     let low = shown.iter().map(|v| v.min).fold(f32::INFINITY, f32::min);
-    let high = shown.iter().map(|v| v.max).fold(f32::NEG_INFINITY, f32::max);
+    let high = shown
+        .iter()
+        .map(|v| v.max)
+        .fold(f32::NEG_INFINITY, f32::max);
     match low <= high {
         // Texels that are all the same are shown white, zeros black.
-        true if low == high => Tone { low: low.min(0.0), high: if high > 0.0 { high } else { 1.0 }, ..*tone },
+        true if low == high => Tone {
+            low: low.min(0.0),
+            high: if high > 0.0 { high } else { 1.0 },
+            ..*tone
+        },
         true => Tone { low, high, ..*tone },
         false => *tone,
     }
@@ -133,29 +149,55 @@ mod tests {
             [2.0, 5.0, f32::NEG_INFINITY, 0.0],
         ]);
         let v = values(&d);
-        assert_eq!((v[0].min, v[0].max, v[0].mean(), v[0].nan, v[0].infinite), (1.0, 3.0, 2.0, 0, 0));
-        assert_eq!((v[1].min, v[1].max, v[1].mean(), v[1].nan, v[1].infinite), (5.0, 5.0, 5.0, 2, 0));
-        assert_eq!((v[2].min, v[2].max, v[2].count, v[2].nan, v[2].infinite), (-2.0, -2.0, 1, 0, 2));
+        assert_eq!(
+            (v[0].min, v[0].max, v[0].mean(), v[0].nan, v[0].infinite),
+            (1.0, 3.0, 2.0, 0, 0)
+        );
+        assert_eq!(
+            (v[1].min, v[1].max, v[1].mean(), v[1].nan, v[1].infinite),
+            (5.0, 5.0, 5.0, 2, 0)
+        );
+        assert_eq!(
+            (v[2].min, v[2].max, v[2].count, v[2].nan, v[2].infinite),
+            (-2.0, -2.0, 1, 0, 2)
+        );
         assert_eq!(values(&decoded("rg8", [1, 1], vec![0, 255])).len(), 2);
     }
 
     #[test]
     fn a_histogram_counts_what_lies_in_the_range() {
-        let list: Vec<[f32; 4]> = (0..256).map(|i| [i as f32, 256.0, f32::NAN, -1.0]).collect();
+        let list: Vec<[f32; 4]> = (0..256)
+            .map(|i| [i as f32, 256.0, f32::NAN, -1.0])
+            .collect();
         let h = histogram(&floats(&list), 0.0, 256.0);
         assert!(h[0].iter().all(|n| *n == 2));
         assert_eq!((h[1][BINS - 1], h[1].iter().sum::<u32>()), (256, 256));
         assert_eq!((h[2].iter().sum::<u32>(), h[3].iter().sum::<u32>()), (0, 0));
-        assert_eq!(histogram(&floats(&list), 0.0, 127.0)[0].iter().sum::<u32>(), 128);
-        assert_eq!(histogram(&floats(&list), 5.0, 5.0)[0].iter().sum::<u32>(), 1);
+        assert_eq!(
+            histogram(&floats(&list), 0.0, 127.0)[0].iter().sum::<u32>(),
+            128
+        );
+        assert_eq!(
+            histogram(&floats(&list), 5.0, 5.0)[0].iter().sum::<u32>(),
+            1
+        );
     }
 
     #[test]
     fn the_range_fits_what_is_shown() {
-        let v = values(&floats(&[[1.0, -2.0, 3.0, 9.0], [0.5, f32::INFINITY, f32::NAN, 7.0]]));
+        let v = values(&floats(&[
+            [1.0, -2.0, 3.0, 9.0],
+            [0.5, f32::INFINITY, f32::NAN, 7.0],
+        ]));
         let fitted = fit(&Tone::default(), &v);
         assert_eq!((fitted.low, fitted.high), (-2.0, 3.0));
-        let alpha = fit(&Tone { channel: Channel::One(3), ..Tone::default() }, &v);
+        let alpha = fit(
+            &Tone {
+                channel: Channel::One(3),
+                ..Tone::default()
+            },
+            &v,
+        );
         assert_eq!((alpha.low, alpha.high), (7.0, 9.0));
         let same = fit(&Tone::default(), &values(&floats(&[[4.0; 4]])));
         assert_eq!((same.low, same.high), (0.0, 4.0));

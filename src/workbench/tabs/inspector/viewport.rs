@@ -14,11 +14,17 @@ pub struct PanZoom {
 }
 
 /// Steps of size. Whole texels or whole pixels, so that no texel looks wider than another.
-const STEPS: [f32; 14] = [0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0, 64.0];
+const STEPS: [f32; 14] = [
+    0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0, 64.0,
+];
 
 /// The next step of size up or down.
 fn step(zoom: f32, up: bool) -> f32 {
-    let next = if up { STEPS.iter().find(|s| **s > zoom * 1.001) } else { STEPS.iter().rfind(|s| **s < zoom * 0.999) };
+    let next = if up {
+        STEPS.iter().find(|s| **s > zoom * 1.001)
+    } else {
+        STEPS.iter().rfind(|s| **s < zoom * 0.999)
+    };
     next.copied().unwrap_or(zoom)
 }
 
@@ -29,24 +35,39 @@ impl Workbench {
         let area = response.rect;
         let scale = ui.ctx().pixels_per_point();
         if self.inspector.in_viewport {
-            self.area = [(area.width() * scale) as u32, (area.height() * scale) as u32];
+            self.area = [
+                (area.width() * scale) as u32,
+                (area.height() * scale) as u32,
+            ];
         }
         painter.rect_filled(area, 0.0, Color32::from_gray(12));
-        let Some(done) = &self.inspector.shown else { return };
-        let size = Vec2::new(done.decoded.size[0].max(1) as f32, done.decoded.size[1].max(1) as f32);
+        let Some(done) = &self.inspector.shown else {
+            return;
+        };
+        let size = Vec2::new(
+            done.decoded.size[0].max(1) as f32,
+            done.decoded.size[1].max(1) as f32,
+        );
         let pan_zoom = &mut self.inspector.pan_zoom;
         let fitting = view::fit(area, done.decoded.size, scale).width() * scale / size.x;
         let rect = |pan_zoom: &PanZoom| {
             let texel = pan_zoom.zoom.unwrap_or(fitting) / scale;
             let min = area.center() - (size / 2.0 + pan_zoom.centre) * texel;
-            let min = Pos2::new((min.x * scale).round() / scale, (min.y * scale).round() / scale);
+            let min = Pos2::new(
+                (min.x * scale).round() / scale,
+                (min.y * scale).round() / scale,
+            );
             Rect::from_min_size(min, size * texel)
         };
         if response.double_clicked() {
             *pan_zoom = PanZoom::default();
         }
         let pointer = response.hover_pos();
-        let wheel = if pointer.is_some() { ui.input(|i| i.smooth_scroll_delta().y) } else { 0.0 };
+        let wheel = if pointer.is_some() {
+            ui.input(|i| i.smooth_scroll_delta().y)
+        } else {
+            0.0
+        };
         let notch = notch(ui, wheel);
         if let Some(at) = pointer.filter(|_| notch != 0) {
             let old = rect(pan_zoom);
@@ -81,9 +102,19 @@ impl Workbench {
     }
 
     /// Place and values of the texel under the pointer.
-    fn under_pointer(&self, painter: &egui::Painter, pointer: Option<Pos2>, shown: Rect, texel: f32) {
-        let Some(done) = &self.inspector.shown else { return };
-        let Some(at) = pointer.filter(|p| shown.contains(*p)) else { return };
+    fn under_pointer(
+        &self,
+        painter: &egui::Painter,
+        pointer: Option<Pos2>,
+        shown: Rect,
+        texel: f32,
+    ) {
+        let Some(done) = &self.inspector.shown else {
+            return;
+        };
+        let Some(at) = pointer.filter(|p| shown.contains(*p)) else {
+            return;
+        };
         let place = ((at - shown.min) / texel).floor();
         let [x, y] = [place.x as u32, place.y as u32];
         let values = done.decoded.values(x, y);
@@ -92,17 +123,35 @@ impl Workbench {
         }
         if texel >= 3.0 {
             let cell = Rect::from_min_size(shown.min + place * texel, Vec2::splat(texel));
-            painter.rect_stroke(cell, 0.0, Stroke::new(1.0, Color32::YELLOW), egui::StrokeKind::Outside);
+            painter.rect_stroke(
+                cell,
+                0.0,
+                Stroke::new(1.0, Color32::YELLOW),
+                egui::StrokeKind::Outside,
+            );
         }
         let target = &done.decoded.target;
         let info = self.sides[target.side.min(1)].info.as_ref();
         let index = info.and_then(|o| o.graph.texture(&target.texture));
-        let volume = info.zip(index).is_some_and(|(o, i)| o.textures.get(i).is_some_and(|t| t.volume));
-        let place: Vec<String> =
-            image::texel(target, volume, done.decoded.size[1], x, y).iter().map(ToString::to_string).collect();
-        let channels: Vec<String> = ["R", "G", "B", "A"].iter().zip(values).map(|(n, v)| format!("{n} {v}")).collect();
+        let volume = info
+            .zip(index)
+            .is_some_and(|(o, i)| o.textures.get(i).is_some_and(|t| t.volume));
+        let place: Vec<String> = image::texel(target, volume, done.decoded.size[1], x, y)
+            .iter()
+            .map(ToString::to_string)
+            .collect();
+        let channels: Vec<String> = ["R", "G", "B", "A"]
+            .iter()
+            .zip(values)
+            .map(|(n, v)| format!("{n} {v}"))
+            .collect();
         let text = format!("({})\n{}", place.join(", "), channels.join("\n"));
-        note(painter, painter.clip_rect(), at + Vec2::new(14.0, 14.0), &text);
+        note(
+            painter,
+            painter.clip_rect(),
+            at + Vec2::new(14.0, 14.0),
+            &text,
+        );
     }
 }
 
@@ -127,7 +176,9 @@ fn note(painter: &egui::Painter, area: Rect, at: Pos2, text: &str) {
     let rect = Rect::from_min_size(at.clamp(area.min, most), size);
     painter.rect_filled(rect, 3.0, Color32::from_black_alpha(190));
     painter.galley(
-        Align2::LEFT_TOP.anchor_size(rect.min + Vec2::splat(4.0), galley.size()).min,
+        Align2::LEFT_TOP
+            .anchor_size(rect.min + Vec2::splat(4.0), galley.size())
+            .min,
         galley,
         Color32::WHITE,
     );

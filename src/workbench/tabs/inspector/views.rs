@@ -19,7 +19,9 @@ impl Workbench {
     /// A button for each view of the graph.
     pub(super) fn view_buttons(&mut self, ui: &mut Ui) {
         let side = self.inspector.target.side;
-        let Some(info) = self.sides[side].info.clone() else { return };
+        let Some(info) = self.sides[side].info.clone() else {
+            return;
+        };
         if info.graph.views.is_empty() {
             return;
         }
@@ -27,26 +29,45 @@ impl Workbench {
         let mut back = false;
         ui.horizontal_wrapped(|ui| {
             for (i, view) in info.graph.views.iter().enumerate() {
-                if ui.button(&view.value.title).on_hover_text(&view.value.help).clicked() {
+                if ui
+                    .button(&view.value.title)
+                    .on_hover_text(&view.value.help)
+                    .clicked()
+                {
                     chosen = Some(i);
                 }
             }
             let before = egui::Button::new("back");
             let about = "Sets the parameters to what they were, and shows the texture again";
-            back = ui.add_enabled(!self.inspector.before.is_empty(), before).on_hover_text(about).clicked();
+            back = ui
+                .add_enabled(!self.inspector.before.is_empty(), before)
+                .on_hover_text(about)
+                .clicked();
         });
         ui.separator();
         if back {
             self.leave_view();
         }
-        let Some(view) = chosen.and_then(|i| info.graph.views.get(i)) else { return };
-        let Some(desired) = self.desired.sides[side].as_mut() else { return };
+        let Some(view) = chosen.and_then(|i| info.graph.views.get(i)) else {
+            return;
+        };
+        let Some(desired) = self.desired.sides[side].as_mut() else {
+            return;
+        };
         for (name, text) in &view.value.set.0 {
-            let Some(param) = info.graph.params.param(&name.value) else { continue };
-            let Ok(value) = param.parse(&text.value.0) else { continue };
+            let Some(param) = info.graph.params.param(&name.value) else {
+                continue;
+            };
+            let Ok(value) = param.parse(&text.value.0) else {
+                continue;
+            };
             let before = &mut self.inspector.before.0;
             if !before.iter().any(|b| b.0 == side && b.1 == name.value) {
-                let old = desired.params.iter().find(|p| p.0 == name.value).map(|p| p.1.clone());
+                let old = desired
+                    .params
+                    .iter()
+                    .find(|p| p.0 == name.value)
+                    .map(|p| p.1.clone());
                 before.push((side, name.value.clone(), old));
             }
             edit::set(desired, param, &value);
@@ -56,7 +77,9 @@ impl Workbench {
     /// Puts the parameters back.
     fn leave_view(&mut self) {
         for (side, name, old) in std::mem::take(&mut self.inspector.before.0) {
-            let Some(desired) = self.desired.sides[side].as_mut() else { continue };
+            let Some(desired) = self.desired.sides[side].as_mut() else {
+                continue;
+            };
             let place = desired.params.iter().position(|p| p.0 == name);
             match (place, old) {
                 (Some(i), Some(old)) => desired.params[i].1 = old,

@@ -42,18 +42,30 @@ pub struct Work {
 
 impl Default for Work {
     fn default() -> Self {
-        Work { busy: false, next: None, channel: unbounded() }
+        Work {
+            busy: false,
+            next: None,
+            channel: unbounded(),
+        }
     }
 }
 
 impl Work {
     /// Starts a piece of work, or keeps it until the one in progress is done; only the latest is kept. With `fit` the
     /// range becomes that of the values.
-    pub fn start(&mut self, source: Source, tone: Tone, fit: bool, wake: &Arc<dyn Fn() + Send + Sync>) {
+    pub fn start(
+        &mut self,
+        source: Source,
+        tone: Tone,
+        fit: bool,
+        wake: &Arc<dyn Fn() + Send + Sync>,
+    ) {
         if self.busy {
             // New texels that wait must not be lost to a change of the range.
             self.next = Some(match (self.next.take(), source) {
-                (Some((new @ Source::New(..), _, fitted)), Source::Again(..)) => (new, tone, fit || fitted),
+                (Some((new @ Source::New(..), _, fitted)), Source::Again(..)) => {
+                    (new, tone, fit || fitted)
+                }
                 (Some((.., fitted)), source) => (source, tone, fit || fitted),
                 (None, source) => (source, tone, fit),
             });
@@ -88,8 +100,19 @@ fn run(source: Source, tone: Tone, fit: bool) -> Done {
         }
         Source::Again(decoded, values) => (decoded, values),
     };
-    let tone = if fit { statistics::fit(&tone, &values) } else { tone };
+    let tone = if fit {
+        statistics::fit(&tone, &values)
+    } else {
+        tone
+    };
     let histogram = statistics::histogram(&decoded, tone.low, tone.high);
     let image = Arc::new(decoded.image(&tone));
-    Done { decoded, values, histogram, tone, fitted: fit, image }
+    Done {
+        decoded,
+        values,
+        histogram,
+        tone,
+        fitted: fit,
+        image,
+    }
 }

@@ -8,7 +8,9 @@ use crate::workbench::desired::edit;
 use crate::workbench::engine::report::GraphInfo;
 use crate::workbench::panel::control::named;
 use crate::workbench::panel::folded;
-use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, epaint::CubicBezierShape};
+use egui::{
+    Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, epaint::CubicBezierShape,
+};
 use layout::{Layout, ROW, TITLE, WIDTH};
 use std::sync::Arc;
 
@@ -61,8 +63,12 @@ impl Nodes {
     /// The layout of a graph, made once.
     fn layout(&mut self, info: &Arc<GraphInfo>) -> &Layout {
         let area = self.area;
-        self.made.take_if(|(of, size, _)| !Arc::ptr_eq(of, info) || *size != area);
-        &self.made.get_or_insert_with(|| (info.clone(), area, Layout::new(info, area))).2
+        self.made
+            .take_if(|(of, size, _)| !Arc::ptr_eq(of, info) || *size != area);
+        &self
+            .made
+            .get_or_insert_with(|| (info.clone(), area, Layout::new(info, area)))
+            .2
     }
 
     /// Chooses a pass, and brings it to the middle.
@@ -74,12 +80,17 @@ impl Nodes {
 impl Workbench {
     /// The graph in the viewport.
     pub(crate) fn graph_view(&mut self, ui: &mut Ui) {
-        let side = self.nodes.side.min(usize::from(self.desired.sides[1].is_some()));
+        let side = self
+            .nodes
+            .side
+            .min(usize::from(self.desired.sides[1].is_some()));
         let Some(info) = self.sides[side].info.clone() else {
             ui.weak(self.waiting_text());
             return;
         };
-        let times = self.times.means(ui.ctx(), side, self.desired.sides[1].is_some());
+        let times = self
+            .times
+            .means(ui.ctx(), side, self.desired.sides[1].is_some());
         let chosen = self.nodes.chosen.clone();
         let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
         let area = response.rect;
@@ -89,9 +100,16 @@ impl Workbench {
         let layout = self.nodes.layout(&info);
         let bounds = layout.bounds();
         let fit = (area.width() / bounds.width()).min(area.height() / bounds.height());
-        let whole = Seen { zoom: fit.clamp(0.1, 1.0), corner: bounds.min };
+        let whole = Seen {
+            zoom: fit.clamp(0.1, 1.0),
+            corner: bounds.min,
+        };
         let mut now = seen.unwrap_or(whole);
-        if let Some(node) = layout.nodes.iter().find(|n| go && chosen.as_ref() == Some(&n.name)) {
+        if let Some(node) = layout
+            .nodes
+            .iter()
+            .find(|n| go && chosen.as_ref() == Some(&n.name))
+        {
             // Large enough to be read.
             now.zoom = now.zoom.max(0.8);
             now.corner = node.rect.center() - 0.5 * area.size() / now.zoom;
@@ -101,7 +119,11 @@ impl Workbench {
             now.corner -= response.drag_delta() / now.zoom;
             seen = Some(now);
         }
-        let wheel = if response.contains_pointer() { ui.input(|i| i.smooth_scroll_delta().y) } else { 0.0 };
+        let wheel = if response.contains_pointer() {
+            ui.input(|i| i.smooth_scroll_delta().y)
+        } else {
+            0.0
+        };
         if let (Some(at), true) = (response.hover_pos(), wheel != 0.0) {
             let zoom = stepped(now.zoom * (wheel * 0.01).exp()).clamp(0.2, 2.0);
             now.corner += (at - area.min) * (1.0 / now.zoom - 1.0 / zoom);
@@ -111,7 +133,12 @@ impl Workbench {
         if response.double_clicked() {
             (now, seen) = (whole, None);
         }
-        let mut canvas = Canvas { ui, area, seen: now, asked: None };
+        let mut canvas = Canvas {
+            ui,
+            area,
+            seen: now,
+            asked: None,
+        };
         canvas.draw(&info, layout, &times.passes, chosen.as_deref());
         let asked = canvas.asked;
         self.nodes.seen = seen;
@@ -137,14 +164,24 @@ impl Workbench {
             self.nodes.side = 0;
         }
         let side = self.nodes.side;
-        let (Some(info), Some(desired)) = (self.sides[side].info.clone(), &self.desired.sides[side]) else { return };
+        let (Some(info), Some(desired)) =
+            (self.sides[side].info.clone(), &self.desired.sides[side])
+        else {
+            return;
+        };
         let mut off = edit::off(desired, &info.params);
         let before = off.clone();
         self.graph_bar(ui);
         if !off.is_empty() {
-            ui.colored_label(ui.visuals().warn_fg_color, format!("off: {}", off.join(", ")));
+            ui.colored_label(
+                ui.visuals().warn_fg_color,
+                format!("off: {}", off.join(", ")),
+            );
             for (name, readers) in zeros(&info) {
-                ui.colored_label(ui.visuals().warn_fg_color, format!("{name} is zeros now: {readers} read it"));
+                ui.colored_label(
+                    ui.visuals().warn_fg_color,
+                    format!("{name} is zeros now: {readers} read it"),
+                );
             }
             if ui.button("all passes on").clicked() {
                 off.clear();
@@ -152,14 +189,22 @@ impl Workbench {
         }
         ui.separator();
         let mut needed = None;
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            let name = self.nodes.chosen.clone().filter(|_| self.nodes.search.is_empty());
-            match name {
-                Some(name) => needed = self.chosen_pass(ui, side, &info, &name, &mut off),
-                None => self.pass_list(ui, side, &info),
-            }
-        });
-        let Some(desired) = &mut self.desired.sides[side] else { return };
+        egui::ScrollArea::vertical()
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                let name = self
+                    .nodes
+                    .chosen
+                    .clone()
+                    .filter(|_| self.nodes.search.is_empty());
+                match name {
+                    Some(name) => needed = self.chosen_pass(ui, side, &info, &name, &mut off),
+                    None => self.pass_list(ui, side, &info),
+                }
+            });
+        let Some(desired) = &mut self.desired.sides[side] else {
+            return;
+        };
         if let Some((name, option)) = needed
             && let Some(param) = info.graph.params.param(&name)
             && let Ok(value) = param.parse(&option)
@@ -176,17 +221,26 @@ impl Workbench {
         let nodes = &mut self.nodes;
         ui.horizontal(|ui| {
             let width = ui.available_width() - 150.0;
-            let field = egui::TextEdit::singleline(&mut nodes.search).hint_text("find a pass, a texture");
+            let field =
+                egui::TextEdit::singleline(&mut nodes.search).hint_text("find a pass, a texture");
             let field = ui.add(field.desired_width(width.max(60.0)));
             named(&field, egui::WidgetType::TextEdit, "find a pass, a texture");
-            if ui.add_enabled(nodes.chosen.is_some(), egui::Button::new("list").small()).clicked() {
+            if ui
+                .add_enabled(nodes.chosen.is_some(), egui::Button::new("list").small())
+                .clicked()
+            {
                 nodes.chosen = None;
             }
-            if ui.small_button("all").on_hover_text("The whole graph; or a double click").clicked() {
+            if ui
+                .small_button("all")
+                .on_hover_text("The whole graph; or a double click")
+                .clicked()
+            {
                 nodes.seen = None;
             }
             let about = "The picture in the middle, not the graph";
-            ui.toggle_value(&mut nodes.beside, egui::RichText::new("picture").small()).on_hover_text(about);
+            ui.toggle_value(&mut nodes.beside, egui::RichText::new("picture").small())
+                .on_hover_text(about);
         });
         let about = "Columns are stages, boxes are passes and what they write, warmer the longer they take. Drag and wheel \
              move; a click on a pass or a texture opens it.";
@@ -198,25 +252,48 @@ impl Workbench {
     /// All passes, or those that are searched for: what runs with its time, the others with why not.
     fn pass_list(&mut self, ui: &mut Ui, side: usize, info: &Arc<GraphInfo>) {
         let needle = folded(&self.nodes.search);
-        let times = self.times.means(ui.ctx(), side, self.desired.sides[1].is_some());
+        let times = self
+            .times
+            .means(ui.ctx(), side, self.desired.sides[1].is_some());
         let mut found = None;
         for (number, pass) in info.graph.passes.iter().enumerate() {
             let name = &pass.value.name.value;
-            let writes = info.uses.iter().find(|u| u.pass == number).map_or(&[][..], |u| &u.writes);
-            if !folded(name).contains(&needle) && !writes.iter().any(|w| folded(w).contains(&needle)) {
+            let writes = info
+                .uses
+                .iter()
+                .find(|u| u.pass == number)
+                .map_or(&[][..], |u| &u.writes);
+            if !folded(name).contains(&needle)
+                && !writes.iter().any(|w| folded(w).contains(&needle))
+            {
                 continue;
             }
             let ms = times.passes.iter().find(|t| t.0 == number).map(|t| t.1);
-            let why = || info.left_out.iter().find(|(pass, _)| *pass == number).map_or("not built yet", |l| &l.1);
+            let why = || {
+                info.left_out
+                    .iter()
+                    .find(|(pass, _)| *pass == number)
+                    .map_or("not built yet", |l| &l.1)
+            };
             let runs = info.passes.contains(&number);
             let text = match ms.filter(|_| runs) {
                 Some(ms) => format!("{name}  {ms:.3} ms"),
                 None if runs => name.clone(),
                 None => format!("{name}  ({})", why()),
             };
-            let text = if runs { egui::RichText::new(text) } else { egui::RichText::new(text).weak() };
+            let text = if runs {
+                egui::RichText::new(text)
+            } else {
+                egui::RichText::new(text).weak()
+            };
             let row = ui.add(egui::Button::new(text).small().frame(false));
-            row.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("find pass {name}")));
+            row.widget_info(|| {
+                egui::WidgetInfo::labeled(
+                    egui::WidgetType::Button,
+                    true,
+                    format!("find pass {name}"),
+                )
+            });
             if row.clicked() {
                 found = Some(name.clone());
             }
@@ -236,25 +313,42 @@ impl Workbench {
         name: &str,
         off: &mut Vec<String>,
     ) -> Option<(String, String)> {
-        let Some(number) = info.graph.passes.iter().position(|p| p.value.name.value == name) else {
+        let Some(number) = info
+            .graph
+            .passes
+            .iter()
+            .position(|p| p.value.name.value == name)
+        else {
             ui.weak(format!("The graph has no pass '{name}' any more"));
             return None;
         };
         let pass = &info.graph.passes[number].value;
         ui.strong(name);
         ui.label(format!("stage: {}", pass.stage()));
-        if let Some((_, ms)) =
-            self.times.means(ui.ctx(), side, self.desired.sides[1].is_some()).passes.iter().find(|t| t.0 == number)
+        if let Some((_, ms)) = self
+            .times
+            .means(ui.ctx(), side, self.desired.sides[1].is_some())
+            .passes
+            .iter()
+            .find(|t| t.0 == number)
         {
             ui.label(format!("{ms:.3} ms (mean)"));
         }
         let mut needed = None;
         if let Some((_, why)) = info.left_out.iter().find(|(pass, _)| *pass == number) {
             ui.colored_label(ui.visuals().warn_fg_color, format!("does not run: {why}"));
-            let needs = self.effects.of(side).and_then(|f| f.resting.get(name)).map_or(&[][..], Vec::as_slice);
+            let needs = self
+                .effects
+                .of(side)
+                .and_then(|f| f.resting.get(name))
+                .map_or(&[][..], Vec::as_slice);
             ui.horizontal_wrapped(|ui| {
                 for (param, option) in needs {
-                    if ui.small_button(format!("{param} = {option}")).on_hover_text("It runs with this").clicked() {
+                    if ui
+                        .small_button(format!("{param} = {option}"))
+                        .on_hover_text("It runs with this")
+                        .clicked()
+                    {
                         needed = Some((param.clone(), option.clone()));
                     }
                 }
@@ -279,14 +373,25 @@ impl Workbench {
                 self.solo(side, info, name, off);
             }
         });
-        let Some(uses) = info.uses.iter().find(|u| u.pass == number) else { return needed };
+        let Some(uses) = info.uses.iter().find(|u| u.pass == number) else {
+            return needed;
+        };
         for (title, list) in [("reads", &uses.reads), ("writes", &uses.writes)] {
             ui.add_space(4.0);
             ui.label(title);
             for resource in list {
                 let texture = info.graph.texture(resource);
-                let text = format!("{resource}  {}", texture.map_or(String::new(), |t| of(info, t)));
-                if ui.add_enabled(texture.is_some(), egui::Button::new(text).small().frame(false)).clicked() {
+                let text = format!(
+                    "{resource}  {}",
+                    texture.map_or(String::new(), |t| of(info, t))
+                );
+                if ui
+                    .add_enabled(
+                        texture.is_some(),
+                        egui::Button::new(text).small().frame(false),
+                    )
+                    .clicked()
+                {
                     self.inspector.open(side, resource.clone());
                     self.tab = crate::workbench::tabs::inspector::TAB;
                 }
@@ -297,7 +402,9 @@ impl Workbench {
 
     /// Puts what is shown beside itself without a pass.
     fn with_and_without(&mut self, side: usize, info: &GraphInfo, name: &str) {
-        let Some(base) = self.desired.sides[side].clone() else { return };
+        let Some(base) = self.desired.sides[side].clone() else {
+            return;
+        };
         let mut off = edit::off(&base, &info.params);
         off.retain(|o| o != name);
         let sides = [off.clone(), [off, vec![name.to_string()]].concat()].map(|off| {
@@ -312,12 +419,23 @@ impl Workbench {
     /// Leaves out every pass that a pass does not need, but those that make the picture, and shows what it writes.
     fn solo(&mut self, side: usize, info: &Arc<GraphInfo>, name: &str, off: &mut Vec<String>) {
         let layout = self.nodes.layout(info);
-        let Some(node) = layout.nodes.iter().position(|n| n.name == name) else { return };
+        let Some(node) = layout.nodes.iter().position(|n| n.name == name) else {
+            return;
+        };
         let mut needed = layout.needed_by(node);
         // Something has to write the picture that is shown meanwhile.
         let output = info.graph.output.as_deref().unwrap_or_default();
-        needed.extend(layout.nodes.iter().rposition(|n| n.writes.iter().any(|w| w == output)));
-        let others = layout.nodes.iter().enumerate().filter(|(i, _)| !needed.contains(i));
+        needed.extend(
+            layout
+                .nodes
+                .iter()
+                .rposition(|n| n.writes.iter().any(|w| w == output)),
+        );
+        let others = layout
+            .nodes
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| !needed.contains(i));
         *off = others.map(|(_, n)| n.name.clone()).collect();
         let texture = |w: &&String| info.graph.texture(w).is_some();
         if let Some(texture) = layout.nodes[node].writes.iter().find(texture).cloned() {
@@ -333,14 +451,21 @@ fn zeros(info: &GraphInfo) -> Vec<(&str, String)> {
         let names: Vec<&str> = reads.map(|u| info.graph.pass_name(u.pass)).collect();
         (!names.is_empty()).then(|| names.join(", "))
     };
-    info.empty.iter().filter_map(|name| Some((name.as_str(), of(name)?))).collect()
+    info.empty
+        .iter()
+        .filter_map(|name| Some((name.as_str(), of(name)?)))
+        .collect()
 }
 
 /// A texture's format and size.
 fn of(info: &GraphInfo, texture: usize) -> String {
     let plan = &info.textures[texture];
     let format = plan.format.name;
-    let depth = if plan.volume { format!("x{}", plan.extent[2]) } else { String::new() };
+    let depth = if plan.volume {
+        format!("x{}", plan.extent[2])
+    } else {
+        String::new()
+    };
     format!("{format} {}x{}{depth}", plan.extent[0], plan.extent[1])
 }
 
@@ -372,32 +497,72 @@ impl Canvas<'_> {
 
     fn text(&self, clip: Rect, at: Pos2, anchor: Align2, text: &str, points: f32, color: Color32) {
         let font = FontId::proportional(points * self.seen.zoom);
-        self.painter(clip).text(self.at(at), anchor, text, font, color);
+        self.painter(clip)
+            .text(self.at(at), anchor, text, font, color);
     }
 
     /// A part that can be clicked on, with a name for scripts and screen readers.
-    fn button(&self, rect: Rect, id: impl egui::AsIdSalt, enabled: bool, name: String) -> Option<egui::Response> {
+    fn button(
+        &self,
+        rect: Rect,
+        id: impl egui::AsIdSalt,
+        enabled: bool,
+        name: String,
+    ) -> Option<egui::Response> {
         let rect = self.place(rect).intersect(self.area);
         if !rect.is_positive() {
             return None;
         }
-        let response = self.ui.interact(rect, self.ui.id().with(id), Sense::click());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, enabled, &name));
+        let response = self
+            .ui
+            .interact(rect, self.ui.id().with(id), Sense::click());
+        response
+            .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, enabled, &name));
         Some(response)
     }
 
-    fn draw(&mut self, info: &GraphInfo, layout: &Layout, times: &[(usize, f64)], chosen: Option<&str>) {
+    fn draw(
+        &mut self,
+        info: &GraphInfo,
+        layout: &Layout,
+        times: &[(usize, f64)],
+        chosen: Option<&str>,
+    ) {
         let ms = |pass: usize| times.iter().find(|t| t.0 == pass).map(|t| t.1);
         let most = times.iter().map(|t| t.1).fold(0.0, f64::max);
-        let (strong, weak) = (self.ui.visuals().text_color(), self.ui.visuals().weak_text_color());
+        let (strong, weak) = (
+            self.ui.visuals().text_color(),
+            self.ui.visuals().weak_text_color(),
+        );
         for column in &layout.columns {
             let total: f64 = column.passes.iter().filter_map(|p| ms(*p)).sum();
             let top = column.rect.left_top();
-            self.text(self.area, top, Align2::LEFT_TOP, &column.stage, 14.0, strong);
+            self.text(
+                self.area,
+                top,
+                Align2::LEFT_TOP,
+                &column.stage,
+                14.0,
+                strong,
+            );
             let below = top + Vec2::new(0.0, 17.0);
-            self.text(self.area, below, Align2::LEFT_TOP, &format!("{total:.3} ms"), 11.5, weak);
-            let line = self.place(Rect::from_min_max(top + Vec2::new(0.0, TITLE), column.rect.right_top()));
-            self.painter(self.area).hline(line.x_range(), line.top(), Stroke::new(1.0, weak.gamma_multiply(0.4)));
+            self.text(
+                self.area,
+                below,
+                Align2::LEFT_TOP,
+                &format!("{total:.3} ms"),
+                11.5,
+                weak,
+            );
+            let line = self.place(Rect::from_min_max(
+                top + Vec2::new(0.0, TITLE),
+                column.rect.right_top(),
+            ));
+            self.painter(self.area).hline(
+                line.x_range(),
+                line.top(),
+                Stroke::new(1.0, weak.gamma_multiply(0.4)),
+            );
         }
         let touches = |i: usize| chosen.is_some_and(|c| layout.nodes[i].name == c);
         for edge in &layout.edges {
@@ -408,46 +573,98 @@ impl Canvas<'_> {
                 (false, false) => Color32::from_rgba_unmultiplied(130, 150, 180, 64),
             };
             let stroke = Stroke::new(if bright { 1.8 } else { 1.0 }, color);
-            self.painter(self.area).add(self.curve(layout, edge, stroke));
+            self.painter(self.area)
+                .add(self.curve(layout, edge, stroke));
         }
         for node in &layout.nodes {
             let time = ms(node.pass).unwrap_or(0.0);
             // The longer a pass takes, the warmer it is.
-            let heat = if most > 0.0 { (time / most).sqrt() as f32 } else { 0.0 };
+            let heat = if most > 0.0 {
+                (time / most).sqrt() as f32
+            } else {
+                0.0
+            };
             self.node(info, node, time, heat, chosen == Some(node.name.as_str()));
         }
     }
 
-    fn node(&mut self, info: &GraphInfo, node: &layout::Node, time: f64, heat: f32, is_chosen: bool) {
-        let (strong, weak) = (self.ui.visuals().text_color(), self.ui.visuals().weak_text_color());
-        let Some(response) = self.button(node.rect, node.pass, true, format!("pass {}", node.name)) else { return };
+    fn node(
+        &mut self,
+        info: &GraphInfo,
+        node: &layout::Node,
+        time: f64,
+        heat: f32,
+        is_chosen: bool,
+    ) {
+        let (strong, weak) = (
+            self.ui.visuals().text_color(),
+            self.ui.visuals().weak_text_color(),
+        );
+        let Some(response) = self.button(node.rect, node.pass, true, format!("pass {}", node.name))
+        else {
+            return;
+        };
         let fill = Color32::from_gray(38).lerp_to_gamma(Color32::from_rgb(140, 66, 40), heat);
-        let fill = if node.runs { fill } else { Color32::from_gray(24) };
+        let fill = if node.runs {
+            fill
+        } else {
+            Color32::from_gray(24)
+        };
         let edge = match (is_chosen, response.hovered()) {
             (true, _) => Stroke::new(2.0, Color32::from_rgb(240, 190, 90)),
             (_, true) => Stroke::new(1.5, strong),
             _ => Stroke::new(1.0, Color32::from_gray(80)),
         };
         let rect = self.place(node.rect);
-        self.painter(self.area).rect(rect, 4.0 * self.seen.zoom, fill, edge, egui::StrokeKind::Inside);
+        self.painter(self.area).rect(
+            rect,
+            4.0 * self.seen.zoom,
+            fill,
+            edge,
+            egui::StrokeKind::Inside,
+        );
         let first = node.rect.left_top() + Vec2::new(6.0, ROW * 0.75);
         let right = Pos2::new(node.rect.right() - 6.0, first.y);
         let color = if node.runs { strong } else { weak };
-        let said = if node.runs { format!("{time:.3}") } else { "off".into() };
+        let said = if node.runs {
+            format!("{time:.3}")
+        } else {
+            "off".into()
+        };
         // Names give way to times.
         let mut names = node.rect;
         names.max.x = right.x - 34.0;
-        self.text(self.place(names), first, Align2::LEFT_CENTER, &node.name, 11.5, color);
+        self.text(
+            self.place(names),
+            first,
+            Align2::LEFT_CENTER,
+            &node.name,
+            11.5,
+            color,
+        );
         self.text(rect, right, Align2::RIGHT_CENTER, &said, 10.5, color);
         for (i, resource) in node.writes.iter().enumerate() {
             let row = row_of(node.rect, i);
             let texture = info.graph.texture(resource).is_some();
             let name = format!("{} writes {resource}", node.name);
-            let hit = (self.seen.zoom >= READABLE).then(|| self.button(row, (node.pass, i), texture, name)).flatten();
+            let hit = (self.seen.zoom >= READABLE)
+                .then(|| self.button(row, (node.pass, i), texture, name))
+                .flatten();
             let bright = texture && hit.as_ref().is_some_and(egui::Response::hovered);
-            let color = if bright { strong } else { Color32::from_gray(150) };
+            let color = if bright {
+                strong
+            } else {
+                Color32::from_gray(150)
+            };
             let at = row.left_center() + Vec2::new(12.0, 0.0);
-            self.text(self.place(row), at, Align2::LEFT_CENTER, resource, 10.5, color);
+            self.text(
+                self.place(row),
+                at,
+                Align2::LEFT_CENTER,
+                resource,
+                10.5,
+                color,
+            );
             if hit.is_some_and(|h| h.clicked()) {
                 self.asked = Some(match texture {
                     true => Asked::Inspect(resource.clone()),

@@ -57,9 +57,21 @@ impl Chart {
         painter.hline(rect.x_range(), line, (0.5, weak));
         let font = FontId::proportional(11.0);
         let at = Pos2::new(rect.right() - 3.0, line + 1.0);
-        painter.text(at, Align2::RIGHT_TOP, format!("{tick} ms"), font.clone(), weak);
+        painter.text(
+            at,
+            Align2::RIGHT_TOP,
+            format!("{tick} ms"),
+            font.clone(),
+            weak,
+        );
         let name = ["A", "B"][side.min(1)];
-        painter.text(rect.left_top() + Vec2::splat(3.0), Align2::LEFT_TOP, name, font, ui.visuals().text_color());
+        painter.text(
+            rect.left_top() + Vec2::splat(3.0),
+            Align2::LEFT_TOP,
+            name,
+            font,
+            ui.visuals().text_color(),
+        );
         let at = response.hover_pos()?;
         let name = under(rect, history, top, at)?;
         Some((name, response))
@@ -72,7 +84,11 @@ fn round_below(x: f64) -> f64 {
         return 0.0;
     }
     let power = 10.0_f64.powi(x.log10().floor() as i32);
-    [5.0, 2.0, 1.0].into_iter().map(|n| n * power).find(|n| *n <= x * 1.000_001).unwrap_or(power)
+    [5.0, 2.0, 1.0]
+        .into_iter()
+        .map(|n| n * power)
+        .find(|n| *n <= x * 1.000_001)
+        .unwrap_or(power)
 }
 
 /// Bottom left of the bar of frame `i`; the newest stands at the right edge.
@@ -89,7 +105,11 @@ fn mesh(rect: Rect, history: &History, top: f64, hovered: Option<&str>) -> Mesh 
         .iter()
         .map(|(_, name)| {
             let color = color(name);
-            if hovered.is_some_and(|h| h != name) { color.gamma_multiply(0.35) } else { color }
+            if hovered.is_some_and(|h| h != name) {
+                color.gamma_multiply(0.35)
+            } else {
+                color
+            }
         })
         .collect();
     for (i, frame) in history.frames.iter().enumerate() {
@@ -117,8 +137,20 @@ fn mesh(rect: Rect, history: &History, top: f64, hovered: Option<&str>) -> Mesh 
 
 fn quad(mesh: &mut Mesh, r: Rect, color: Color32) {
     let first = mesh.vertices.len() as u32;
-    let corner = |pos: Pos2| Vertex { pos, uv: WHITE_UV, color };
-    mesh.vertices.extend([r.left_top(), r.right_top(), r.left_bottom(), r.right_bottom()].map(corner));
+    let corner = |pos: Pos2| Vertex {
+        pos,
+        uv: WHITE_UV,
+        color,
+    };
+    mesh.vertices.extend(
+        [
+            r.left_top(),
+            r.right_top(),
+            r.left_bottom(),
+            r.right_bottom(),
+        ]
+        .map(corner),
+    );
     mesh.indices.extend([0, 1, 2, 2, 1, 3].map(|i| first + i));
 }
 
@@ -145,7 +177,11 @@ mod tests {
     #[test]
     fn bars_stand_where_the_pointer_finds_them() {
         let mut history = History::new(vec![(4, "below".into()), (7, "above".into())]);
-        history.push(Frame { gpu_ms: 3.0, passes: vec![(4, 1.0), (7, 2.0)], ..Frame::default() });
+        history.push(Frame {
+            gpu_ms: 3.0,
+            passes: vec![(4, 1.0), (7, 2.0)],
+            ..Frame::default()
+        });
         let rect = Rect::from_min_size(Pos2::ZERO, Vec2::new(240.0, 100.0));
         let at = |x: f32, y: f32| under(rect, &history, 4.0, Pos2::new(x, y));
         assert_eq!(at(239.5, 90.0).as_deref(), Some("below"));
@@ -153,12 +189,18 @@ mod tests {
         assert_eq!((at(239.5, 10.0), at(100.0, 90.0)), (None, None));
         let mesh = mesh(rect, &history, 4.0, None);
         assert_eq!(mesh.vertices.len(), 8);
-        assert_eq!((mesh.vertices[0].pos, mesh.vertices[7].pos), (Pos2::new(239.0, 75.0), Pos2::new(240.0, 75.0)));
+        assert_eq!(
+            (mesh.vertices[0].pos, mesh.vertices[7].pos),
+            (Pos2::new(239.0, 75.0), Pos2::new(240.0, 75.0))
+        );
         assert_eq!(mesh.vertices[0].color, color("below"));
     }
 
     #[test]
     fn the_axis_has_round_numbers() {
-        assert_eq!([1032.67, 0.73, 2.0, 0.0].map(round_below), [1000.0, 0.5, 2.0, 0.0]);
+        assert_eq!(
+            [1032.67, 0.73, 2.0, 0.0].map(round_below),
+            [1000.0, 0.5, 2.0, 0.0]
+        );
     }
 }

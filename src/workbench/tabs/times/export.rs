@@ -38,7 +38,8 @@ const NOTE: &str = "Frames and passes are laid end to end by their GPU time, eac
 
 /// A trace in Chrome's format, which Perfetto reads: a track for A, one for B, one for the CPU. Times in µs.
 pub fn trace(sides: &[History; 2]) -> Vec<u8> {
-    let mut events = vec![json!({ "ph": "M", "name": "process_name", "pid": 1, "args": { "name": "conelab" } })];
+    let mut events =
+        vec![json!({ "ph": "M", "name": "process_name", "pid": 1, "args": { "name": "conelab" } })];
     for (track, name) in [(1, "A, GPU"), (2, "B, GPU"), (3, "CPU")] {
         events.push(json!({ "ph": "M", "name": "thread_name", "pid": 1, "tid": track, "args": { "name": name } }));
     }
@@ -57,16 +58,29 @@ pub fn trace(sides: &[History; 2]) -> Vec<u8> {
         free = start + duration;
         events.push(complete(&name, 3, start, duration, json!({})));
     }
-    let trace = json!({ "traceEvents": events, "displayTimeUnit": "ms", "otherData": { "note": NOTE } });
+    let trace =
+        json!({ "traceEvents": events, "displayTimeUnit": "ms", "otherData": { "note": NOTE } });
     trace.to_string().into_bytes()
 }
 
 /// Adds the passes of a frame; when the next frame may begin, µs.
-fn frame_events(events: &mut Vec<Value>, track: usize, start: f64, history: &History, frame: &Frame) -> f64 {
+fn frame_events(
+    events: &mut Vec<Value>,
+    track: usize,
+    start: f64,
+    history: &History,
+    frame: &Frame,
+) -> f64 {
     let mut at = start;
     for (number, name) in &history.passes {
         let duration = frame.pass(*number) * 1e3;
-        events.push(complete(name, track, at, duration, json!({ "frame": frame.frame, "time_s": frame.time })));
+        events.push(complete(
+            name,
+            track,
+            at,
+            duration,
+            json!({ "frame": frame.frame, "time_s": frame.time }),
+        ));
         at += duration;
     }
     at.max(start + frame.gpu_ms * 1e3)
@@ -103,13 +117,36 @@ mod tests {
     fn a_table_reads_back_with_the_same_sums() {
         let bytes = csv(&sides()).unwrap();
         let mut reader = csv::Reader::from_reader(bytes.as_slice());
-        let heads: Vec<String> = reader.headers().unwrap().iter().map(str::to_string).collect();
-        assert_eq!(heads, ["side", "frame", "time", "cpu_ms", "gpu_ms", "draw, all", "tone", "only \"B\""]);
+        let heads: Vec<String> = reader
+            .headers()
+            .unwrap()
+            .iter()
+            .map(str::to_string)
+            .collect();
+        assert_eq!(
+            heads,
+            [
+                "side",
+                "frame",
+                "time",
+                "cpu_ms",
+                "gpu_ms",
+                "draw, all",
+                "tone",
+                "only \"B\""
+            ]
+        );
         let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
         assert_eq!(rows.len(), 10);
         let sum = |side: &str, column: usize| -> f64 {
-            let cells = rows.iter().filter(|r| &r[0] == side).map(|r| r[column].to_string());
-            cells.filter(|c| !c.is_empty()).map(|c| c.parse::<f64>().unwrap()).sum()
+            let cells = rows
+                .iter()
+                .filter(|r| &r[0] == side)
+                .map(|r| r[column].to_string());
+            cells
+                .filter(|c| !c.is_empty())
+                .map(|c| c.parse::<f64>().unwrap())
+                .sum()
         };
         assert_eq!((sum("A", 4), sum("A", 5) + sum("A", 6)), (20.0, 20.0));
         assert_eq!((sum("B", 5), sum("B", 6), sum("B", 7)), (0.0, 2.5, 3.125));
@@ -119,7 +156,12 @@ mod tests {
     #[test]
     fn events_of_a_track_do_not_overlap() {
         let trace: Value = serde_json::from_slice(&trace(&sides())).unwrap();
-        assert!(trace["otherData"]["note"].as_str().unwrap().contains("end to end"));
+        assert!(
+            trace["otherData"]["note"]
+                .as_str()
+                .unwrap()
+                .contains("end to end")
+        );
         for track in 1..=3 {
             let events = trace["traceEvents"].as_array().unwrap().iter();
             let mut spans: Vec<(f64, f64)> = events
@@ -128,10 +170,21 @@ mod tests {
                 .collect();
             assert_eq!(spans.len(), 10);
             spans.sort_by(|a, b| a.0.total_cmp(&b.0));
-            assert!(spans.windows(2).all(|w| w[0].0 + w[0].1 <= w[1].0 + 1e-6), "{spans:?}");
+            assert!(
+                spans.windows(2).all(|w| w[0].0 + w[0].1 <= w[1].0 + 1e-6),
+                "{spans:?}"
+            );
         }
         // 5 frames of A take 3.5 ms and more on the GPU.
-        let last = trace["traceEvents"].as_array().unwrap().iter().rfind(|e| e["tid"] == 1 && e["ph"] == "X").unwrap();
-        assert_eq!(last["ts"].as_f64().unwrap() + last["dur"].as_f64().unwrap(), 20_000.0);
+        let last = trace["traceEvents"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .rfind(|e| e["tid"] == 1 && e["ph"] == "X")
+            .unwrap();
+        assert_eq!(
+            last["ts"].as_f64().unwrap() + last["dur"].as_f64().unwrap(),
+            20_000.0
+        );
     }
 }

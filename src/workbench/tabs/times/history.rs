@@ -28,7 +28,14 @@ impl Frame {
     /// The times of a picture's frame.
     pub fn of(p: &PictureReport) -> Frame {
         let (passes, asleep) = (p.passes.clone(), p.asleep.clone());
-        Frame { frame: p.frame, time: p.time, cpu_ms: p.cpu_ms, gpu_ms: p.gpu_ms, passes, asleep }
+        Frame {
+            frame: p.frame,
+            time: p.time,
+            cpu_ms: p.cpu_ms,
+            gpu_ms: p.gpu_ms,
+            passes,
+            asleep,
+        }
     }
 
     /// GPU time between the passes, ms.
@@ -38,7 +45,11 @@ impl Frame {
 
     /// Time of a pass, ms; a pass that ran several times has the sum.
     pub fn pass(&self, number: usize) -> f64 {
-        self.passes.iter().filter(|p| p.0 == number).map(|p| p.1).sum()
+        self.passes
+            .iter()
+            .filter(|p| p.0 == number)
+            .map(|p| p.1)
+            .sum()
     }
 }
 
@@ -56,7 +67,10 @@ pub struct History {
 impl History {
     /// A history of these passes, without frames yet.
     pub fn new(passes: Vec<(usize, String)>) -> History {
-        History { passes, ..History::default() }
+        History {
+            passes,
+            ..History::default()
+        }
     }
 
     /// Adds a frame and forgets the oldest.
@@ -70,7 +84,9 @@ impl History {
 
     /// The last `count` frames.
     fn last(&self, count: usize) -> impl Iterator<Item = &Frame> {
-        self.frames.iter().skip(self.frames.len().saturating_sub(count))
+        self.frames
+            .iter()
+            .skip(self.frames.len().saturating_sub(count))
     }
 
     /// Mean time of the last `count` frames, ms; none without frames.
@@ -134,9 +150,14 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
     let total = a.mean(count, &|f| f.gpu_ms).unwrap_or(0.0);
     let row = |name: &str, is_pass: bool, times: [Option<Time<'_>>; 2]| {
         let mean = [0, 1].map(|i| sides[i].mean(count, times[i]?));
-        let alone: Vec<f64> = times[0].iter().flat_map(|time| a.last(count).map(time)).collect();
+        let alone: Vec<f64> = times[0]
+            .iter()
+            .flat_map(|time| a.last(count).map(time))
+            .collect();
         let most = alone.iter().copied().fold(0.0, f64::max);
-        let share = mean[0].filter(|_| total > 0.0 && name != CPU).map(|ms| format!("{:.1}%", 100.0 * ms / total));
+        let share = mean[0]
+            .filter(|_| total > 0.0 && name != CPU)
+            .map(|ms| format!("{:.1}%", 100.0 * ms / total));
         let ms = |v: Option<f64>| v.map_or(String::new(), digits);
         let ratio = match mean {
             [Some(a), Some(b)] if a > 0.0 => format!("{:.2}", b / a),
@@ -146,19 +167,37 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
         let cells = if both {
             [ms(mean[0]), ms(mean[1]), ratio, share]
         } else {
-            [ms(mean[0]), ms(mean[0].map(|_| spread(alone).p95)), share, ms(mean[0].map(|_| most))]
+            [
+                ms(mean[0]),
+                ms(mean[0].map(|_| spread(alone).p95)),
+                share,
+                ms(mean[0].map(|_| most)),
+            ]
         };
-        Row { name: name.into(), is_pass, mean, asleep: [false; 2], cells }
+        Row {
+            name: name.into(),
+            is_pass,
+            mean,
+            asleep: [false; 2],
+            cells,
+        }
     };
     let number = |h: &History, name: &str| h.passes.iter().find(|p| p.1 == name).map(|p| p.0);
     let slept = |h: &History, name: &str| {
-        h.frames.back().zip(number(h, name)).is_some_and(|(frame, number)| frame.asleep.contains(&number))
+        h.frames
+            .back()
+            .zip(number(h, name))
+            .is_some_and(|(frame, number)| frame.asleep.contains(&number))
     };
     let mut list: Vec<Row> = Vec::with_capacity(names.len() + 2);
     for name in names {
-        let pass = sides.map(|h| number(h, name).map(|number| move |frame: &Frame| frame.pass(number)));
+        let pass =
+            sides.map(|h| number(h, name).map(|number| move |frame: &Frame| frame.pass(number)));
         let times = [0, 1].map(|i| pass[i].as_ref().map(|time| time as Time<'_>));
-        list.push(Row { asleep: sides.map(|h| slept(h, name)), ..row(name, true, times) });
+        list.push(Row {
+            asleep: sides.map(|h| slept(h, name)),
+            ..row(name, true, times)
+        });
     }
     let all = |time: &'static dyn Fn(&Frame) -> f64| [Some(time), both.then_some(time)];
     list.push(row(OUTSIDE, false, all(&Frame::outside)));
@@ -188,10 +227,21 @@ mod tests {
     use super::*;
 
     fn history(names: &[&str], times: &[&[f64]]) -> History {
-        let mut h = History::new(names.iter().enumerate().map(|(i, n)| (i, (*n).to_string())).collect());
+        let mut h = History::new(
+            names
+                .iter()
+                .enumerate()
+                .map(|(i, n)| (i, (*n).to_string()))
+                .collect(),
+        );
         for t in times {
             let passes: Vec<(usize, f64)> = t.iter().copied().enumerate().collect();
-            h.push(Frame { gpu_ms: t.iter().sum(), cpu_ms: 1.0, passes, ..Frame::default() });
+            h.push(Frame {
+                gpu_ms: t.iter().sum(),
+                cpu_ms: 1.0,
+                passes,
+                ..Frame::default()
+            });
         }
         h
     }
@@ -200,7 +250,10 @@ mod tests {
     fn only_the_last_frames_are_kept() {
         let mut h = history(&["a"], &[]);
         for i in 0..KEPT as u64 + 7 {
-            h.push(Frame { frame: i, ..Frame::default() });
+            h.push(Frame {
+                frame: i,
+                ..Frame::default()
+            });
         }
         assert_eq!((h.frames.len(), h.frames[0].frame), (KEPT, 7));
     }
@@ -224,7 +277,11 @@ mod tests {
         let mut h = history(&["always", "once in four"], &[]);
         for i in 0..8 {
             let passes = vec![(0, 1.0), (1, if i % 4 == 0 { 40.0 } else { 0.0 })];
-            h.push(Frame { gpu_ms: passes.iter().map(|p| p.1).sum::<f64>() + 0.5, passes, ..Frame::default() });
+            h.push(Frame {
+                gpu_ms: passes.iter().map(|p| p.1).sum::<f64>() + 0.5,
+                passes,
+                ..Frame::default()
+            });
         }
         let rows = rows(&h, None);
         let means: Vec<f64> = rows.iter().map(|r| r.mean[0].unwrap()).collect();
@@ -235,9 +292,22 @@ mod tests {
     #[test]
     fn a_pass_sleeps_in_the_last_frame_or_not() {
         let mut h = history(&["x", "y"], &[&[1.0, 2.0]]);
-        h.push(Frame { passes: vec![(0, 0.0), (1, 2.0)], asleep: vec![0], ..Frame::default() });
-        assert_eq!(rows(&h, None).iter().map(|r| r.asleep[0]).collect::<Vec<_>>(), [true, false, false, false, false]);
-        h.push(Frame { passes: vec![(0, 1.0), (1, 2.0)], ..Frame::default() });
+        h.push(Frame {
+            passes: vec![(0, 0.0), (1, 2.0)],
+            asleep: vec![0],
+            ..Frame::default()
+        });
+        assert_eq!(
+            rows(&h, None)
+                .iter()
+                .map(|r| r.asleep[0])
+                .collect::<Vec<_>>(),
+            [true, false, false, false, false]
+        );
+        h.push(Frame {
+            passes: vec![(0, 1.0), (1, 2.0)],
+            ..Frame::default()
+        });
         assert!(rows(&h, None).iter().all(|r| !r.asleep[0]));
     }
 
@@ -251,6 +321,10 @@ mod tests {
     fn alone_it_says_how_times_spread() {
         let rows = rows(&history(&["x"], &[&[1.0], &[2.0], &[9.0]]), None);
         assert_eq!(rows[0].cells, ["4.000", "9.000", "100.0%", "9.000"]);
-        assert!(super::rows(&History::default(), None).iter().all(|r| r.cells.iter().all(String::is_empty)));
+        assert!(
+            super::rows(&History::default(), None)
+                .iter()
+                .all(|r| r.cells.iter().all(String::is_empty))
+        );
     }
 }

@@ -60,19 +60,29 @@ impl Times {
     /// Takes in the times of a frame.
     pub fn note(&mut self, picture: &PictureReport) {
         // The passes of a preview are those of another graph.
-        if let Some(side) = self.sides.get_mut(picture.side).filter(|_| !picture.preview) {
+        if let Some(side) = self
+            .sides
+            .get_mut(picture.side)
+            .filter(|_| !picture.preview)
+        {
             side.push(Frame::of(picture));
         }
     }
 
     /// A side runs something new: its times so far are of something else.
     pub fn built(&mut self, side: usize, info: &GraphInfo) {
-        let pass = |i: &usize| info.graph.passes.get(*i).map(|p| (*i, p.value.name.value.clone()));
+        let pass = |i: &usize| {
+            info.graph
+                .passes
+                .get(*i)
+                .map(|p| (*i, p.value.name.value.clone()))
+        };
         self.sides[side] = History::new(info.passes.iter().filter_map(pass).collect());
         (self.made, self.means) = (None, [None, None]);
         if side == 0 {
             self.memory.clone_from(&info.memory);
-            self.memory.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+            self.memory
+                .sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
             self.scene_bytes = info.scene_bytes;
         }
     }
@@ -99,13 +109,29 @@ impl Times {
             }
         }
         // Both sides are averaged over the same number of frames.
-        let count = if both { self.sides[0].frames.len().min(self.sides[1].frames.len()) } else { KEPT };
+        let count = if both {
+            self.sides[0].frames.len().min(self.sides[1].frames.len())
+        } else {
+            KEPT
+        };
         let of = |time: &dyn Fn(&Frame) -> f64| history.mean(count, time);
-        let passes = history.passes.iter().filter_map(|p| Some((p.0, of(&|f| f.pass(p.0))?))).collect();
-        let rests = history.frames.back().map_or(Vec::new(), |f| f.asleep.clone());
+        let passes = history
+            .passes
+            .iter()
+            .filter_map(|p| Some((p.0, of(&|f| f.pass(p.0))?)))
+            .collect();
+        let rests = history
+            .frames
+            .back()
+            .map_or(Vec::new(), |f| f.asleep.clone());
         let total = of(&|f: &Frame| f.gpu_ms).unwrap_or(0.0);
         let outside = (OUTSIDE, of(&Frame::outside).unwrap_or(0.0));
-        let made = Arc::new(Means { passes, rests, outside, total });
+        let made = Arc::new(Means {
+            passes,
+            rests,
+            outside,
+            total,
+        });
         self.means[side] = Some((history.changes, Instant::now(), made.clone()));
         made
     }
@@ -127,44 +153,56 @@ impl Workbench {
     pub(crate) fn times_tab(&mut self, ui: &mut Ui) {
         let both = self.desired.sides[1].is_some();
         self.times.refresh(both);
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            // The scroll bar must not cover the last column.
-            ui.set_max_width(ui.available_width() - 8.0);
-            self.exports(ui);
-            let mut hovered = None;
-            let mut clicked = None;
-            let top = (0..=usize::from(both)).map(|i| self.times.sides[i].top()).fold(0.0, f64::max);
-            for i in 0..=usize::from(both) {
-                let shown = self.times.charts[i].show(ui, i, &self.times.sides[i], top, self.times.hovered.as_deref());
-                let Some((name, response)) = shown else { continue };
-                if response.clicked() {
-                    clicked = Some((i, name.clone()));
+        egui::ScrollArea::vertical()
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                // The scroll bar must not cover the last column.
+                ui.set_max_width(ui.available_width() - 8.0);
+                self.exports(ui);
+                let mut hovered = None;
+                let mut clicked = None;
+                let top = (0..=usize::from(both))
+                    .map(|i| self.times.sides[i].top())
+                    .fold(0.0, f64::max);
+                for i in 0..=usize::from(both) {
+                    let shown = self.times.charts[i].show(
+                        ui,
+                        i,
+                        &self.times.sides[i],
+                        top,
+                        self.times.hovered.as_deref(),
+                    );
+                    let Some((name, response)) = shown else {
+                        continue;
+                    };
+                    if response.clicked() {
+                        clicked = Some((i, name.clone()));
+                    }
+                    response.on_hover_text_at_pointer(self.pass_text(i, &name));
+                    hovered = Some(name);
                 }
-                response.on_hover_text_at_pointer(self.pass_text(i, &name));
-                hovered = Some(name);
-            }
-            ui.add_space(4.0);
-            head(ui, both);
-            for n in 0..self.times.rows.len() {
-                let row = &self.times.rows[n];
-                let response = line(ui, row, both, self.times.hovered.as_deref());
-                if !row.is_pass || !response.hovered() {
-                    continue;
+                ui.add_space(4.0);
+                head(ui, both);
+                for n in 0..self.times.rows.len() {
+                    let row = &self.times.rows[n];
+                    let response = line(ui, row, both, self.times.hovered.as_deref());
+                    if !row.is_pass || !response.hovered() {
+                        continue;
+                    }
+                    let (side, name) = (usize::from(row.mean[0].is_none()), row.name.clone());
+                    if response.clicked() {
+                        clicked = Some((side, name.clone()));
+                    }
+                    response.on_hover_text_at_pointer(self.pass_text(side, &name));
+                    hovered = Some(name);
                 }
-                let (side, name) = (usize::from(row.mean[0].is_none()), row.name.clone());
-                if response.clicked() {
-                    clicked = Some((side, name.clone()));
+                self.times.hovered = hovered;
+                if let Some((side, name)) = clicked {
+                    self.inspect_pass(side, &name);
                 }
-                response.on_hover_text_at_pointer(self.pass_text(side, &name));
-                hovered = Some(name);
-            }
-            self.times.hovered = hovered;
-            if let Some((side, name)) = clicked {
-                self.inspect_pass(side, &name);
-            }
-            ui.separator();
-            memory(ui, &self.times.memory, self.times.scene_bytes);
-        });
+                ui.separator();
+                memory(ui, &self.times.memory, self.times.scene_bytes);
+            });
     }
 
     fn exports(&mut self, ui: &mut Ui) {
@@ -220,14 +258,23 @@ impl Workbench {
     }
 
     fn pass_writes(&self, side: usize, name: &str) -> &[String] {
-        let Some(info) = &self.sides[side].info else { return &[] };
-        let named = |u: &&PassUses| info.graph.passes.get(u.pass).is_some_and(|p| p.value.name.value == name);
+        let Some(info) = &self.sides[side].info else {
+            return &[];
+        };
+        let named = |u: &&PassUses| {
+            info.graph
+                .passes
+                .get(u.pass)
+                .is_some_and(|p| p.value.name.value == name)
+        };
         info.uses.iter().find(named).map_or(&[], |u| &u.writes)
     }
 
     /// Opens the first texture that a pass writes in the inspector.
     fn inspect_pass(&mut self, side: usize, name: &str) {
-        let Some(info) = self.sides[side].info.clone() else { return };
+        let Some(info) = self.sides[side].info.clone() else {
+            return;
+        };
         let texture = |n: &&String| info.graph.texture(n).is_some();
         let Some(texture) = self.pass_writes(side, name).iter().find(texture).cloned() else {
             self.status = format!("{name} writes no texture");
@@ -240,26 +287,53 @@ impl Workbench {
 
 /// Writes `captures/NAME.ENDING` under `root`, or with a number behind the name when that exists.
 fn write_free(root: &Path, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, FileError> {
-    let stem: String = name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect();
+    let stem: String = name
+        .chars()
+        .map(|c| {
+            if c.is_alphanumeric() || "-_".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        })
+        .collect();
     for n in 1..10_000 {
-        let number = if n == 1 { String::new() } else { format!("-{n}") };
-        let path = root.join("captures").join(format!("{stem}{number}.{ending}"));
+        let number = if n == 1 {
+            String::new()
+        } else {
+            format!("-{n}")
+        };
+        let path = root
+            .join("captures")
+            .join(format!("{stem}{number}.{ending}"));
         match crate::files::write_new(&path, bytes) {
             Err(e) if e.is_there() => {}
             other => return other.map(|()| path),
         }
     }
-    Err(FileError::write(&root.join("captures").join(stem), "too many files of that name"))
+    Err(FileError::write(
+        &root.join("captures").join(stem),
+        "too many files of that name",
+    ))
 }
 
 /// Right edges of the columns of numbers, as shares of the width.
 fn columns(both: bool) -> &'static [f32] {
-    if both { &[0.57, 0.73, 0.86, 1.0] } else { &[0.55, 0.70, 0.85, 1.0] }
+    if both {
+        &[0.57, 0.73, 0.86, 1.0]
+    } else {
+        &[0.55, 0.70, 0.85, 1.0]
+    }
 }
 
 fn head(ui: &mut Ui, both: bool) {
-    let names: [&str; 4] = if both { ["A ms", "B ms", "B/A", "A %"] } else { ["mean ms", "p95 ms", "share", "max ms"] };
-    let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
+    let names: [&str; 4] = if both {
+        ["A ms", "B ms", "B/A", "A %"]
+    } else {
+        ["mean ms", "p95 ms", "share", "max ms"]
+    };
+    let (rect, response) =
+        ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
     let color = ui.visuals().weak_text_color();
     for (x, name) in columns(both).iter().zip(names) {
         put(ui, rect, *x, name, color);
@@ -273,35 +347,55 @@ fn head(ui: &mut Ui, both: bool) {
 
 fn put(ui: &Ui, rect: Rect, x: f32, text: &str, color: Color32) {
     let at = Pos2::new(rect.left() + rect.width() * x - 2.0, rect.center().y);
-    ui.painter().text(at, Align2::RIGHT_CENTER, text, FontId::monospace(10.5), color);
+    ui.painter().text(
+        at,
+        Align2::RIGHT_CENTER,
+        text,
+        FontId::monospace(10.5),
+        color,
+    );
 }
 
 fn line(ui: &mut Ui, row: &Row, both: bool, hovered: Option<&str>) -> Response {
-    let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::click());
+    let (rect, response) =
+        ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &row.name));
     if !ui.is_rect_visible(rect) {
         return response;
     }
     if response.hovered() || (row.is_pass && hovered == Some(row.name.as_str())) {
-        ui.painter().rect_filled(rect, 2.0, ui.visuals().widgets.hovered.weak_bg_fill);
+        ui.painter()
+            .rect_filled(rect, 2.0, ui.visuals().widgets.hovered.weak_bg_fill);
     }
     // What slept in both is grey.
-    let slept =
-        [0, 1].map(|side| row.mean[side].is_none() || row.asleep[side]) == [true; 2] && row.asleep != [false; 2];
-    let color = if slept { ui.visuals().weak_text_color() } else { ui.visuals().text_color() };
+    let slept = [0, 1].map(|side| row.mean[side].is_none() || row.asleep[side]) == [true; 2]
+        && row.asleep != [false; 2];
+    let color = if slept {
+        ui.visuals().weak_text_color()
+    } else {
+        ui.visuals().text_color()
+    };
     let mut left = rect.left();
     if row.is_pass {
-        let swatch = Rect::from_center_size(Pos2::new(left + 5.0, rect.center().y), Vec2::splat(8.0));
-        ui.painter().rect_filled(swatch, 1.0, timers::color(&row.name));
+        let swatch =
+            Rect::from_center_size(Pos2::new(left + 5.0, rect.center().y), Vec2::splat(8.0));
+        ui.painter()
+            .rect_filled(swatch, 1.0, timers::color(&row.name));
         left += 13.0;
     }
     // Names give way to numbers.
     let right = rect.left() + rect.width() * columns(both).first().copied().unwrap_or(1.0) - NUMBER;
     let names = Rect::from_min_max(Pos2::new(left, rect.top()), Pos2::new(right, rect.bottom()));
-    let mut job = egui::text::LayoutJob::simple_singleline(row.title(both), FontId::proportional(11.5), color);
+    let mut job = egui::text::LayoutJob::simple_singleline(
+        row.title(both),
+        FontId::proportional(11.5),
+        color,
+    );
     job.wrap = egui::text::TextWrapping::truncate_at_width(names.width());
     let galley = ui.painter().layout_job(job);
-    let at = Align2::LEFT_CENTER.anchor_size(names.left_center(), galley.size()).min;
+    let at = Align2::LEFT_CENTER
+        .anchor_size(names.left_center(), galley.size())
+        .min;
     ui.painter().galley(at, galley, color);
     for (x, text) in columns(both).iter().zip(&row.cells) {
         put(ui, rect, *x, text, color);
@@ -313,26 +407,38 @@ fn memory(ui: &mut Ui, list: &[(String, u64)], scene: u64) {
     let mib = |b: u64| format!("{:.2} MiB", b as f64 / 1_048_576.0);
     let total: u64 = list.iter().map(|m| m.1).sum();
     let title = format!("Memory of A: {}, scene {}", mib(total), mib(scene));
-    egui::CollapsingHeader::new(title).id_salt("memory").default_open(true).show(ui, |ui| {
-        let most = list.first().map_or(1, |m| m.1.max(1));
-        for (name, bytes) in list {
-            let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
-            if !ui.is_rect_visible(rect) {
-                continue;
+    egui::CollapsingHeader::new(title)
+        .id_salt("memory")
+        .default_open(true)
+        .show(ui, |ui| {
+            let most = list.first().map_or(1, |m| m.1.max(1));
+            for (name, bytes) in list {
+                let (rect, _) =
+                    ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
+                if !ui.is_rect_visible(rect) {
+                    continue;
+                }
+                let part = (*bytes as f32 / most as f32).max(0.002);
+                let bar = Rect::from_min_size(rect.min, Vec2::new(rect.width() * part, ROW - 2.0));
+                ui.painter().rect_filled(
+                    bar,
+                    1.0,
+                    ui.visuals()
+                        .faint_bg_color
+                        .lerp_to_gamma(Color32::from_rgb(60, 90, 140), 0.6),
+                );
+                let color = ui.visuals().text_color();
+                let font = FontId::proportional(12.0);
+                ui.painter().text(
+                    rect.left_center() + Vec2::new(3.0, 0.0),
+                    Align2::LEFT_CENTER,
+                    name,
+                    font,
+                    color,
+                );
+                put(ui, rect, 1.0, &mib(*bytes), color);
             }
-            let part = (*bytes as f32 / most as f32).max(0.002);
-            let bar = Rect::from_min_size(rect.min, Vec2::new(rect.width() * part, ROW - 2.0));
-            ui.painter().rect_filled(
-                bar,
-                1.0,
-                ui.visuals().faint_bg_color.lerp_to_gamma(Color32::from_rgb(60, 90, 140), 0.6),
-            );
-            let color = ui.visuals().text_color();
-            let font = FontId::proportional(12.0);
-            ui.painter().text(rect.left_center() + Vec2::new(3.0, 0.0), Align2::LEFT_CENTER, name, font, color);
-            put(ui, rect, 1.0, &mib(*bytes), color);
-        }
-    });
+        });
 }
 
 #[cfg(test)]
@@ -346,6 +452,12 @@ mod tests {
         let second = write_free(folder.path(), "times-a b/c", "csv", b"2").unwrap();
         assert_eq!(first, folder.path().join("captures/times-a_b_c.csv"));
         assert_eq!(second, folder.path().join("captures/times-a_b_c-2.csv"));
-        assert_eq!((std::fs::read(first).unwrap(), std::fs::read(second).unwrap()), (b"1".to_vec(), b"2".to_vec()));
+        assert_eq!(
+            (
+                std::fs::read(first).unwrap(),
+                std::fs::read(second).unwrap()
+            ),
+            (b"1".to_vec(), b"2".to_vec())
+        );
     }
 }
