@@ -58,7 +58,7 @@ record() {
         rooms) bench configs/rays.ron --sizes 1920x1080 \
             --axis "scene=\"cornell\",\"atrium\",\"$sponza\",\"configs/scenes/living-room.ron\",\"street\",\"emitters\",\"foliage\"" --rounds 3 ;;
         moving)
-            local way=(render configs/rays.ron --scene "$sponza" --size 1920x1080 --set voxel_dim=256 --redo changed
+            local way=(render configs/rays.ron --scene "$sponza" --size 1920x1080 --set voxel_dim=256 --execution incremental
                 --path configs/paths/sponza.ron --step 0.0166667 --warmup 600 --frames 300)
             run "${way[@]}" --json "$work/moving.json" -o "$work/moving.png"
             keep_json moving "$work/moving.json" "${way[@]}"

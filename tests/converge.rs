@@ -5,8 +5,8 @@ mod common;
 use common::{assert_clean, floats, lab, root, scene};
 use conelab::diagnostics::{At, Loc};
 use conelab::experiment::Experiment;
-use conelab::graph::load::load;
-use conelab::graph::run::Redo;
+use conelab::graph::run::Execution;
+use conelab::lab::load;
 use conelab::lab::{Lab, Session, Workspace};
 use conelab::measure::reference::{Goal, gather};
 use conelab::measure::{Frames, Scored, Warm, measure};
@@ -106,7 +106,7 @@ fn session(lab: &Lab, experiment: &Experiment) -> Session {
         Ok(radiance.cloned().into_iter().collect())
     };
     let mut session = lab.prepare(experiment, scene("cornell"), wanted).unwrap().0;
-    session.set_redo(Redo::Changed);
+    session.set_execution(Execution::Incremental);
     session
 }
 
@@ -241,7 +241,7 @@ fn equal_settings_of_a_and_b_differ_in_no_bit() {
             scene: "cornell".into(),
             size: (32, 24),
             bytes: true,
-            redo: Redo::Changed,
+            execution: Execution::Incremental,
             ..RenderRequest::default()
         };
         let mut ask = |request: &RenderRequest| {

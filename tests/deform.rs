@@ -4,7 +4,7 @@ mod common;
 
 use common::{assert_clean, experiment, floats, home, lab, model_file};
 use conelab::experiment::{CameraChoice, PlacedCamera};
-use conelab::graph::run::Redo;
+use conelab::graph::run::Execution;
 use conelab::lab::{Lab, Session};
 use conelab::measure::oracle::triangles_of;
 use conelab::measure::reference::{Goal, gather};
@@ -242,12 +242,12 @@ fn the_reference_follows_the_skin() {
 }
 
 #[test]
-fn frames_that_redo_what_changed_are_those_that_redo_all() {
+fn incremental_frames_are_equal_to_full_ones() {
     let lab = lab(common::root());
     let scene = Arc::new(figure(false));
-    let [all, changed] = [Redo::All, Redo::Changed].map(|redo| {
+    let [all, changed] = [Execution::Full, Execution::Incremental].map(|execution| {
         let mut session = session(&lab, &scene, 0.0, 0, &SMALL);
-        session.set_redo(redo);
+        session.set_execution(execution);
         // It moves, stands, and moves on.
         let steps = [0.1, 0.1, 0.1, 0.0, 0.0, 0.0, 0.2, 0.0, 0.0];
         steps.map(|step| {

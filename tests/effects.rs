@@ -150,7 +150,7 @@ fn the_graph_that_opens_first_pins_what_was_asked_for_in_that_order() {
         ("warp_alpha", "Warp alpha"),
     ];
     for graph in [first.graph.as_str(), "warps.ron", "temporal.ron"] {
-        let graph = conelab::graph::load::load(&home.graph_path(graph), &home.folders()).unwrap();
+        let graph = conelab::lab::load(&home.graph_path(graph), &home.folders()).unwrap();
         let pinned: Vec<_> = graph
             .pinned
             .iter()
@@ -200,7 +200,7 @@ fn every_pinned_parameter_changes_the_picture() {
             ],
         ),
     ] {
-        let pinned = conelab::graph::load::load(&home.graph_path(graph), &home.folders())
+        let pinned = conelab::lab::load(&home.graph_path(graph), &home.folders())
             .unwrap()
             .pinned;
         let names: Vec<&str> = pinned.iter().map(|p| p.0.as_str()).collect();

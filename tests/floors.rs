@@ -22,7 +22,7 @@ const FLOORS: [&[&str]; 11] = [
 
 /// The rooms of `src/graph`, likewise: what a graph is, how it is read, linked, planned, run.
 const GRAPH: [&[&str]; 9] = [
-    &["expr", "externals", "host"],
+    &["expr", "interface"],
     &["param"],
     &["file"],
     &["table", "definition"],

@@ -1159,8 +1159,8 @@ fn what_is_transient_shares_memory_and_changes_nothing() {
             .contains("'t' is transient")
     );
 
-    // What sleeps leaves nothing in them: it runs again for who reads.
-    session.set_redo(conelab::graph::run::Redo::Changed);
+    // A skipped pass leaves nothing in them: it runs again for a pass that reads.
+    session.set_execution(conelab::graph::run::Execution::Incremental);
     let mut params = session.params.clone();
     for (frame, (name, value)) in [
         ("last", "1"),
@@ -1185,8 +1185,8 @@ fn what_is_transient_shares_memory_and_changes_nothing() {
             expected(first, last),
             "frame {frame}"
         );
-        let slept = times.last().unwrap().asleep.len();
-        assert_eq!(slept, if frame == 3 { 8 } else { 0 }, "frame {frame}");
+        let skipped = times.last().unwrap().skipped.len();
+        assert_eq!(skipped, if frame == 3 { 8 } else { 0 }, "frame {frame}");
     }
 
     // A program made from the parts of another takes the memory over, and one that wants more does not.

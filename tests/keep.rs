@@ -8,8 +8,9 @@ use conelab::diagnostics::{At, Loc};
 use conelab::experiment::{
     CameraChoice, Experiment, LightChange, PlacedCamera, checked_name, write,
 };
-use conelab::graph::load::{Folders, load};
+use conelab::graph::load::Folders;
 use conelab::graph::param::{Kind, Params};
+use conelab::lab::load;
 use conelab::results::capture;
 use glam::{Mat4, Vec3};
 use proptest::prelude::*;

@@ -7,11 +7,12 @@ use common::{
     assert_clean, conelab, experiment, fails, floats, lab, mean, prepare, root, scene, succeeds,
 };
 use conelab::experiment::Experiment;
-use conelab::graph::load::{Folders, load};
+use conelab::graph::load::Folders;
 use conelab::graph::param::Value;
 use conelab::graph::plan::plan;
 use conelab::graph::run::Change;
 use conelab::graph::{Evaluated, Graph, signed};
+use conelab::lab::load;
 use conelab::lab::{Lab, Session, Workspace, any_device, environment};
 use insta::assert_snapshot;
 use std::collections::BTreeSet;

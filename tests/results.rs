@@ -4,8 +4,8 @@
 mod common;
 
 use common::root;
-use conelab::graph::load::load;
 use conelab::lab::Workspace;
+use conelab::lab::load;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -194,13 +194,13 @@ fn json(name: &str) -> (String, serde_json::Value) {
 /// A camera in motion: what the passes that run take, by stage.
 fn moving() -> String {
     let (said, record) = json("moving");
-    let (mut stages, mut asleep): (Vec<(String, f64)>, usize) = (Vec::new(), 0);
+    let (mut stages, mut skipped): (Vec<(String, f64)>, usize) = (Vec::new(), 0);
     for pass in record["passes"].as_array().unwrap() {
         let (stage, ms) = (
             pass["stage"].as_str().unwrap(),
             pass["gpu_ms"]["median"].as_f64().unwrap(),
         );
-        asleep += usize::from(pass["slept"].as_u64() == pass["frames"].as_u64());
+        skipped += usize::from(pass["skipped"].as_u64() == pass["frames"].as_u64());
         match stages.iter_mut().find(|s| s.0 == stage) {
             Some(of) => of.1 += ms,
             None => stages.push((stage.into(), ms)),
@@ -219,7 +219,7 @@ fn moving() -> String {
         .collect();
     let passes = record["passes"].as_array().unwrap().len();
     format!(
-        "{said}\n\n{}\n{asleep} of {passes} passes sleep in all of these frames.\n",
+        "{said}\n\n{}\n{skipped} of {passes} passes are skipped in all of these frames.\n",
         table(&["stage", "ms"], &lines)
     )
 }

@@ -10,8 +10,8 @@ mod common;
 mod mutate;
 
 use common::{lab, root};
-use conelab::graph::load::load;
 use conelab::graph::param::{Kind, Param, Value};
+use conelab::lab::load;
 use conelab::lab::{Lab, LabError, Workspace};
 use mutate::Random;
 

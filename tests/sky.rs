@@ -5,7 +5,7 @@ mod common;
 use common::{assert_clean, experiment, lab, root, scene};
 use conelab::diagnostics::{At, Loc};
 use conelab::experiment::{EnvironmentChange, Experiment, write};
-use conelab::graph::run::Redo;
+use conelab::graph::run::Execution;
 use conelab::lab::{Lab, Session};
 use conelab::measure::reference::{Goal, Reference, gather};
 use conelab::results::capture::scene_hash;
@@ -186,10 +186,10 @@ fn a_turned_picture_is_a_picture_shifted() {
         &expected,
         0.02,
     );
-    // As it is turned, frames sleep until it is, and wake then.
+    // Frames are skipped until the sky turns.
     let straight = under(&folder, &floor, "", &patches);
     let mut live = session(&lab, &straight);
-    live.set_redo(Redo::Changed);
+    live.set_execution(Execution::Incremental);
     let first = texture(&lab, &mut live, "radiance");
     assert!(texture(&lab, &mut live, "radiance") == first);
     live.turn_sky(90.0);

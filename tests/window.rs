@@ -614,7 +614,7 @@ fn the_window_answers_and_closes_while_a_slow_device_renders() {
 }
 
 #[test]
-fn what_nothing_changes_sleeps_at_a_click() {
+fn unchanged_passes_are_skipped_at_a_click() {
     let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
     let mut driver = small();
     let first = driver.first_picture();
@@ -626,18 +626,18 @@ fn what_nothing_changes_sleeps_at_a_click() {
         driver
             .events
             .iter()
-            .all(|e| e["event"] != "picture" || e["asleep"] == 0),
+            .all(|e| e["event"] != "picture" || e["skipped"] == 0),
         "all is done"
     );
     driver.click("", "what changes");
-    let asleep =
-        |e: &Value| e["event"] == "picture" && e["asleep"].as_u64().is_some_and(|n| n > 20);
-    let still = driver.wait(mark, "most passes sleep", asleep);
+    let skipped =
+        |e: &Value| e["event"] == "picture" && e["skipped"].as_u64().is_some_and(|n| n > 20);
+    let still = driver.wait(mark, "most passes are skipped", skipped);
     assert_eq!(still["fingerprint"], first, "the same picture");
     let mark = driver.now();
     driver.click("", "what changes");
     let all = driver.wait(mark, "all passes run", |e| {
-        e["event"] == "picture" && e["asleep"] == 0
+        e["event"] == "picture" && e["skipped"] == 0
     });
     assert_eq!(all["fingerprint"], first);
 }

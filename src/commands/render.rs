@@ -4,7 +4,7 @@ use super::adapt::{self, ExperimentArgs, parse_resource};
 use super::{DeviceArgs, writable};
 use crate::camera_path::CameraPath;
 use crate::graph::param::Value;
-use crate::graph::run::{FrameTimes, Redo};
+use crate::graph::run::{Execution, FrameTimes};
 use crate::graph::{Graph, LightPart};
 use crate::lab::{Lab, LabError, Session, Texels, Workspace};
 use crate::results::timers::{Rows, Timers, stamped};
@@ -29,7 +29,7 @@ pub struct RenderArgs {
     warmup: Option<usize>,
     /// Whether each frame does all, or only passes whose outcome changes; pictures are the same, to the bit.
     #[arg(long, value_enum, default_value_t)]
-    redo: Redo,
+    execution: Execution,
     /// Move the camera along this path (configs/paths) by each frame's time.
     #[arg(long, value_name = "FILE")]
     path: Option<PathBuf>,
@@ -114,7 +114,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
             "nothing to write: name the picture with --output, for example -o picture.png".into(),
         ));
     }
-    session.set_redo(args.redo);
+    session.set_execution(args.execution);
     let mut times = Vec::new();
     let alone =
         args.frames.is_none() && args.sequence.is_none() && args.path.is_none() && args.step == 0.0;

@@ -2,7 +2,7 @@
 
 use super::adapt::ExperimentArgs;
 use crate::experiment::{checked_name, write};
-use crate::graph::load::load;
+use crate::lab::load;
 use crate::lab::{LabError, Workspace};
 use clap::Args;
 

@@ -2,7 +2,7 @@
 
 use super::DeviceArgs;
 use super::adapt::parse_size;
-use crate::graph::run::Redo;
+use crate::graph::run::Execution;
 use crate::lab::{LabError, Workspace};
 use crate::workbench::Options;
 use crate::workbench::hosts::screenshot::{Edit, Pace, Script, take};
@@ -114,7 +114,7 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         experiment,
         scene,
         size,
-        redo: Redo::All,
+        execution: Execution::Full,
         events,
     };
     let shot = take(options, &gpu, script)?;

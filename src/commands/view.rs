@@ -1,7 +1,7 @@
 //! `conelab view`.
 
 use super::DeviceArgs;
-use crate::graph::run::Redo;
+use crate::graph::run::Execution;
 use crate::lab::{LabError, Workspace};
 use crate::vulkan::GpuOptions;
 use crate::workbench::Options;
@@ -22,7 +22,7 @@ pub struct ViewArgs {
     size: Option<String>,
     /// Whether each frame does all, or only passes whose outcome changes.
     #[arg(long, value_enum, default_value_t)]
-    redo: Redo,
+    execution: Execution,
     /// Size of the window.
     #[arg(long, value_name = "WxH", default_value = "1600x900")]
     window: String,
@@ -63,7 +63,7 @@ pub fn run(args: &ViewArgs) -> Result<(), LabError> {
         experiment,
         scene,
         size,
-        redo: args.redo,
+        execution: args.execution,
         events,
     };
     window::run(options, window)

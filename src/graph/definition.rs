@@ -5,20 +5,24 @@ use super::file::{
     Bind, BufferDecl, CheckDecl, CompareDecl, PassDecl, RefuseDecl, SceneNeeds, TableDecl,
     TextureDecl, ToolDecl, ViewDecl,
 };
+use super::interface::SceneInterface;
 use super::param::{Params, Value};
 use crate::diagnostics::{At, Loc, Sources};
 use crate::metrics::Kind;
 
 /// A graph that was read and checked.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Graph {
     /// Its name: the file's stem.
     pub name: String,
+    /// What every scene offers to it.
+    pub interface: &'static SceneInterface,
     /// Parameters at their defaults.
     pub params: Params,
-    /// Parameters that the panel shows first: name, title. One that is retired is shown with what to write instead.
+    /// Parameters that the panel shows first: name, title. One that is retired is shown with what
+    /// to write instead.
     pub pinned: Vec<(String, String)>,
-    /// Modules that nobody chooses: name, file in the shader folder.
+    /// Modules without a choice: name, file in the shader folder.
     pub modules: Vec<(String, String)>,
     /// Named values, each after those that it reads.
     pub values: Vec<Named>,
@@ -44,12 +48,12 @@ pub struct Graph {
     pub checks: Vec<Loc<CheckDecl>>,
     /// Settings that make no sense together.
     pub refuse: Vec<RefuseDecl>,
-    /// What a picture is said to be made with; see [`Graph::caption`].
+    /// Caption of pictures; see [`Graph::caption`].
     pub(super) caption: Option<Loc<String>>,
-    /// The `Vec2` parameter that a click on the picture sets: pixels from the picture's top left corner, negative
-    /// where nothing is pointed at.
+    /// The `Vec2` parameter that a click on the picture sets: pixels from the picture's top left
+    /// corner, negative where nothing is pointed at.
     pub pointer: Option<String>,
-    /// Buffers that may be read as tables; wanted only by who asks for them.
+    /// Buffers that may be read as tables, on request.
     pub tables: Vec<Loc<TableDecl>>,
     /// Settings worth comparing.
     pub compare: Vec<Loc<CompareDecl>>,
@@ -57,15 +61,17 @@ pub struct Graph {
     pub views: Vec<Loc<ViewDecl>>,
     /// Parameters that trade time for quality, and the values worth trying, neighbours alike.
     pub fit: Vec<(String, Vec<String>)>,
-    /// Settings from the ideal to the method as it is set: what each step adds is a part of its error.
+    /// Settings from the ideal to the method as it is set: what each step adds is a part of its
+    /// error.
     pub ablation: Vec<Loc<ViewDecl>>,
-    /// What tools are told, by their names.
+    /// Settings of tools, by their names.
     pub tools: Vec<(String, Loc<ToolDecl>)>,
     /// The files it came from.
     pub sources: Sources,
 }
 
-/// A named value: an expression that a graph declares once, for its other expressions and for shaders. Nobody sets it.
+/// A named value: an expression that a graph declares once, for its other expressions and for
+/// shaders.
 #[derive(Clone, Debug)]
 pub struct Named {
     /// Name in expressions and shaders.
@@ -86,7 +92,7 @@ impl Named {
         self.expr.value.variables().iter().any(|v| v == name)
     }
 
-    /// What it is with these variables, or why it is nothing.
+    /// Its number with these variables, or the error.
     pub(super) fn number(&self, env: &Env) -> Result<f64, String> {
         let value = self.expr.value.eval(env)?;
         let rounded = (value + 1e-9).floor();
@@ -109,19 +115,19 @@ impl Named {
     }
 }
 
-/// A name that shaders bind and that stands for something else: one of several resources, or a texture sampled in its own
-/// way.
+/// A name that shaders bind and that stands for something else: one of several resources, or a
+/// texture sampled in its own way.
 #[derive(Clone, Debug)]
 pub struct Alias {
     /// The name.
     pub name: String,
     /// Where it is declared.
     pub at: At,
-    /// What it stands for: the first whose condition holds.
+    /// Its cases. The first one with a true condition applies.
     pub cases: Vec<AliasCase>,
 }
 
-/// What a name stands for under a condition.
+/// A conditional binding of a name.
 #[derive(Clone, Debug)]
 pub struct AliasCase {
     /// The condition; none in the last case.
@@ -130,7 +136,8 @@ pub struct AliasCase {
     pub bind: Bind,
 }
 
-/// A resource of the graph, by its number among the textures or buffers; `true` is last frame's copy.
+/// A resource of the graph, by its number among the textures or buffers; `true` is last frame's
+/// copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Res {
     /// A texture.
@@ -212,7 +219,7 @@ impl Graph {
         &self.passes[pass].value.name.value
     }
 
-    /// What a picture is said to be made with, with these values of the parameters.
+    /// The caption with these values of the parameters.
     pub fn caption(&self, params: &Params) -> Option<String> {
         let mut text = self.caption.as_ref()?.value.clone();
         for (param, value) in params.list.iter().zip(&params.values) {
@@ -236,7 +243,7 @@ impl Graph {
             .collect()
     }
 
-    /// What a tool is told.
+    /// The settings of a tool.
     pub fn tool(&self, name: &str) -> Option<&Loc<ToolDecl>> {
         self.tools.iter().find(|t| t.0 == name).map(|t| &t.1)
     }
@@ -246,7 +253,8 @@ impl Graph {
         self.aliases.iter().find(|a| a.name == name)
     }
 
-    /// What a name stands for in a pass, by condition: itself, what the pass's `bind` says, or the cases of an alias.
+    /// The bindings of a name in a pass, by condition: itself, the pass's `bind`, or the cases of
+    /// an alias.
     pub(super) fn cases(&self, pass: &PassDecl, name: &str) -> Vec<(Option<Ex>, Option<Bind>)> {
         let own = pass.bind(name);
         match self.alias(own.map_or(name, |b| b.of.value.as_str())) {
@@ -269,7 +277,7 @@ impl Graph {
         cases.flat_map(|c| c.when.iter().chain(&c.bind.mip))
     }
 
-    /// Expressions of what is needed of the scene.
+    /// Expressions of the requirements on the scene.
     pub(super) fn scene_expressions(&self) -> impl Iterator<Item = &Ex> {
         self.scene
             .iter()

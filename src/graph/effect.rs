@@ -1,10 +1,11 @@
-//! Which parameters have an effect on the frame as it runs now, and why the others have none. Nothing is declared for it:
-//! a parameter counts where a shader of a pass that runs reads it, or where another value of it would change an expression
-//! that counts. What shaders decide at run time is beyond that; a declaration's `when` tells it.
+//! Which parameters have an effect on the frame as it runs now, and why the others have none.
+//! Nothing is declared for it: a parameter counts where a shader of a pass that runs reads it, or
+//! where another value of it would change an expression that counts. What shaders decide at run
+//! time is beyond that; a declaration's `when` tells it.
 
 use super::evaluated::Evaluated;
 use super::expr::{Env, Ex, Var};
-use super::externals::EXTERNALS;
+use super::interface::PARAMS;
 use super::link::{Linked, Target, generated, has_word};
 use super::param::{Kind, Param, Params, Value};
 use crate::shader::{ShaderCompiler, module_include};
@@ -31,8 +32,8 @@ pub struct Reason {
     pub needs: Vec<(String, String)>,
 }
 
-/// Parameters that change nothing now, by name, with the reason. `compiler` finds the files of options that are
-/// not chosen.
+/// Parameters that change nothing now, by name, with the reason. `compiler` finds the files of
+/// options that are not chosen.
 pub fn idle(running: &Running<'_>, compiler: &ShaderCompiler) -> BTreeMap<String, Reason> {
     let (params, read) = (running.set.params, read_by_shaders(running));
     let trial = Trial::new(running, &read);
@@ -87,8 +88,7 @@ fn read_by_shaders(running: &Running<'_>) -> BTreeSet<String> {
     let mut texts: BTreeMap<&str, &str> = BTreeMap::new();
     for link in running.passes.iter().filter_map(|p| running.linked.get(*p)) {
         for bound in &link.bound {
-            let block =
-                |t: &Target| matches!(t, Target::External(e) if EXTERNALS[*e].name == "params");
+            let block = |t: &Target| *t == Target::External(PARAMS);
             let Some(layout) = bound
                 .layout
                 .as_ref()
@@ -454,7 +454,7 @@ impl Texts {
         let made = generated(graph, params);
         let mut files = BTreeMap::new();
         let mut take = |file: &str| -> BTreeSet<String> {
-            // What cannot be read is told where it is compiled.
+            // Compilation reports unreadable files.
             let texts = compiler.texts(file, &made).unwrap_or_default();
             let names = texts.keys().cloned().collect();
             files.extend(texts.into_iter().filter(|t| t.0 != "params.glsl"));

@@ -12,11 +12,12 @@ pub struct Evaluated<'g> {
     pub graph: &'g Graph,
     /// Values of its parameters.
     pub params: &'g Params,
-    /// Variables of expressions: the parameters, the named values, and those of scene, size and device.
+    /// Variables of expressions: the parameters, the named values, and those of scene, size and
+    /// device.
     pub env: Env,
     /// The named values, in the graph's order; 0 where one has no value.
     pub values: Vec<Value>,
-    /// Those without a value, and why. One that reads such a one is not told again.
+    /// Errors of values. A value that depends on one with an error is not reported again.
     pub errors: Vec<Diagnostic>,
 }
 

@@ -1,5 +1,5 @@
-//! Expressions over parameters: sizes, counts and conditions. The language is that of Rhai's expressions; variables are
-//! numbers or booleans, a true result counts as 1.
+//! Expressions over parameters: sizes, counts and conditions. The language is that of Rhai's
+//! expressions; variables are numbers or booleans, a true result counts as 1.
 
 use crate::diagnostics::Loc;
 use rhai::packages::{ArithmeticPackage, BasicMathPackage, LogicPackage, Package};
@@ -33,7 +33,8 @@ pub struct Expr {
     compiled: Result<AST, String>,
 }
 
-/// Arithmetic, comparisons and a few functions; no loops, no strings to speak of, and a bound on the work.
+/// Arithmetic, comparisons and a few functions; no loops, no strings to speak of, and a bound on
+/// the work.
 static ENGINE: LazyLock<Engine> = LazyLock::new(|| {
     let mut engine = Engine::new_raw();
     ArithmeticPackage::new().register_into_engine(&mut engine);
@@ -119,7 +120,7 @@ fn incomparable<A: rhai::Variant + Clone, B: rhai::Variant + Clone>(
 }
 
 impl Expr {
-    /// Compiles a text; a mistake is kept and told by [`Expr::mistake`].
+    /// Compiles a text. [`Expr::mistake`] returns a mistake.
     pub fn new(text: &str) -> Expr {
         let compiled = if text.len() > 1000 {
             Err(String::from("longer than 1000 characters"))
@@ -147,7 +148,7 @@ impl Expr {
         self.compiled.as_ref().err().map(String::as_str)
     }
 
-    /// What it was compiled to; nothing where it is no expression.
+    /// The compiled expression; nothing if it has a mistake.
     pub(super) fn statements(&self) -> &[rhai::Stmt] {
         self.compiled.as_ref().map_or(&[], |ast| ast.statements())
     }
@@ -157,7 +158,8 @@ impl Expr {
         &self.variables
     }
 
-    /// Its value, or why it has none (a variable that has no value here, a number where a condition belongs).
+    /// Its value, or why it has none (a variable that has no value here, a number where a condition
+    /// belongs).
     ///
     /// # Errors
     /// The text for the user.

@@ -1,13 +1,12 @@
-//! The pass graph: parameters, textures, buffers and passes, read from RON. Of tools it knows their names and what
-//! graphs tell them; of the method nothing.
+//! The pass graph: parameters, textures, buffers and passes, read from RON. It knows the names and
+//! settings of tools, and nothing of the method.
 
 mod definition;
 pub mod effect;
 mod evaluated;
 pub mod expr;
-pub mod externals;
 pub mod file;
-pub(crate) mod host;
+pub mod interface;
 pub mod link;
 pub mod load;
 pub mod outline;

@@ -1,4 +1,4 @@
-//! A plan for programs: what runs, on what, and how large it is.
+//! A plan in JSON: passes that run, their resources, and sizes.
 
 use super::definition::Graph;
 use super::param::{Params, Value};
@@ -58,7 +58,7 @@ pub struct TextureOutline {
     pub layers: u32,
     /// Whether it holds nothing between frames, and may share memory.
     pub transient: bool,
-    /// Whether last frame's content is kept beside this one's.
+    /// Whether a second copy holds last frame's content.
     pub history: bool,
     /// Bytes of all copies.
     pub bytes: u64,
@@ -71,7 +71,7 @@ pub struct BufferOutline {
     pub name: String,
     /// Whether it holds nothing between frames, and may share memory.
     pub transient: bool,
-    /// Whether last frame's content is kept beside this one's.
+    /// Whether a second copy holds last frame's content.
     pub history: bool,
     /// Bytes of all copies.
     pub bytes: u64,

@@ -1,4 +1,5 @@
-//! A plan for people: order, lifetimes, barriers, memory, and what was left out; or a Graphviz picture.
+//! A plan as text: order, lifetimes, barriers, memory, and passes left out; or as a Graphviz
+//! picture.
 
 use super::definition::{Graph, Res};
 use super::effect::effective;
@@ -9,7 +10,8 @@ use super::plan::{Barrier, Plan, Step, Use, Work, pack, schedule};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// A screen: for each pass that runs, its stage, shader files and results; then memory, and the names of the others.
+/// A screen: for each pass that runs, its stage, shader files and results; then memory, and the
+/// names of the others.
 pub fn summary(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> String {
     let graph = set.graph;
     let (ran, all, params) = (
@@ -100,7 +102,8 @@ pub fn summary(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> String {
     out
 }
 
-/// Stage, name, shader files and results of each pass that runs. The passes of a stage that clear share a row.
+/// Stage, name, shader files and results of each pass that runs. The passes of a stage that clear
+/// share a row.
 fn rows(graph: &Graph, linked: &[Linked], plan: &Plan) -> Vec<[String; 4]> {
     let mut rows: Vec<[String; 4]> = Vec::new();
     let mut stage = "";
@@ -162,7 +165,8 @@ fn rows(graph: &Graph, linked: &[Linked], plan: &Plan) -> Vec<[String; 4]> {
     rows
 }
 
-/// Bytes of the memory that transient resources share, and how much more they had alone. Devices round sizes up.
+/// Bytes of the memory that transient resources share, and how much more they had alone. Devices
+/// round sizes up.
 fn shared(plan: &Plan) -> (u64, u64) {
     let sizes: Vec<(u64, u64)> = plan
         .transients
@@ -173,7 +177,8 @@ fn shared(plan: &Plan) -> (u64, u64) {
     (all, sizes.iter().map(|(bytes, _)| bytes).sum::<u64>() - all)
 }
 
-/// Every step in order with its barriers; sizes, formats and lifetimes of resources; what was left out and why.
+/// Every step in order with its barriers; sizes, formats and lifetimes of resources; passes left
+/// out, with reasons.
 pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
     let mut out = String::new();
     let _ = writeln!(
@@ -411,7 +416,7 @@ pub fn params(params: &Params) -> String {
     out
 }
 
-/// Named values with what they are now.
+/// Named values with their present numbers.
 pub fn values(set: &Evaluated<'_>) -> String {
     let mut out = String::new();
     if !set.values.is_empty() {

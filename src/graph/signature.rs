@@ -1,17 +1,19 @@
-//! Signatures: numbers that tell whether a stage has the settings of an earlier frame. A shader stores one in a buffer with
-//! the results of the stage, and discards these where the signature is another.
+//! Signatures: numbers that tell whether a stage has the settings of an earlier frame. A shader
+//! stores one in a buffer with the results of the stage, and discards these where the signature is
+//! another.
 
 use super::evaluated::Evaluated;
 use super::link::{Bound, Linked, Target};
 use super::param::Value;
 use super::plan::{Plan, Step};
-use super::{Res, externals::EXTERNALS};
+use super::{Res, interface::PARAMS};
 use std::hash::{BuildHasher, Hash, Hasher};
 
-/// The named values with their signatures, 1 to 2^31 - 1. A signature is a hash of the graph's name and, for each step of
-/// the stage, of the shaders, the work, the sizes of all resources used, and the parameters and values read. Passes that
-/// read the signature do not count: they decide themselves which results stay valid when their own settings change, as
-/// passes that move a volume do. A signature is the same in every run. Two settings share one by chance only (2^-31).
+/// The named values with their signatures, 1 to 2^31 - 1. A signature is a hash of the graph's name
+/// and, for each step of the stage, of the shaders, the work, the sizes of all resources used, and
+/// the parameters and values read. Passes that read the signature do not count: they decide
+/// themselves which results stay valid when their own settings change, as passes that move a volume
+/// do. A signature is the same in every run. Two settings share one by chance only (2^-31).
 pub fn signed(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> Vec<Value> {
     let bytes = set.params.uniform_bytes(&set.values);
     let mut values = set.values.clone();
@@ -34,8 +36,7 @@ pub fn signed(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> Vec<Value>
 
 /// The bindings of the block of parameters.
 fn params_of(link: &Linked) -> impl Iterator<Item = &Bound> {
-    let is_params =
-        |target: &Target| matches!(target, Target::External(e) if EXTERNALS[*e].name == "params");
+    let is_params = |target: &Target| *target == Target::External(PARAMS);
     link.bound
         .iter()
         .filter(move |b| b.cases.iter().any(|c| is_params(&c.target)))

@@ -55,13 +55,13 @@ impl CellKind {
 /// A value of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// Of a `uint` column.
+    /// Value of a `uint` column.
     Uint(u32),
-    /// Of an `int` column.
+    /// Value of an `int` column.
     Int(i32),
-    /// Of a `float` column.
+    /// Value of a `float` column.
     Float(f32),
-    /// Of a `vec2`, `vec3` or `vec4` column.
+    /// Value of a `vec2`, `vec3` or `vec4` column.
     Vector(Vec<f32>),
 }
 
@@ -79,10 +79,11 @@ impl fmt::Display for Cell {
     }
 }
 
-/// No table has more rows than this; what a buffer holds beyond it is not shown.
+/// Most rows of a table; further rows are not shown.
 pub const MAX_ROWS: usize = 100_000;
 
-/// The rows that `bytes`, the content of the table's buffer, hold: as many as the row word says, and at most as fit.
+/// The rows that `bytes`, the content of the table's buffer, hold: as many as the row word says,
+/// and at most as fit.
 pub fn decode(table: &Table, bytes: &[u8]) -> Vec<Vec<Cell>> {
     let count = word(bytes, table.rows as usize * 4)
         .map_or(0, |n| n as usize)
@@ -173,7 +174,8 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_not_read() {
-        // The word asks for more rows than there are bytes; the last row is cut short; there is no row word at all.
+        // The word asks for more rows than there are bytes; the last row is cut short; there is no
+        // row word at all.
         assert_eq!(decode(&pairs(), &buffer(u32::MAX, &[0.0; 11])).len(), 2);
         assert_eq!(decode(&pairs(), &buffer(0, &[0.0; 8])).len(), 0);
         assert_eq!(decode(&pairs(), &[0; 4]).len(), 0);

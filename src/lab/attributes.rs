@@ -1,5 +1,5 @@
-//! The buffer `attributes` (`shaders/common/scene.glsl`): for each vertex its normal and u, tangent and sign, v, packed
-//! colour, and second set of texture coordinates.
+//! The buffer `attributes` (`shaders/common/scene.glsl`): for each vertex its normal and u, tangent
+//! and sign, v, packed colour, and second set of texture coordinates.
 
 use crate::scene::{Lookups, Scene, Vertex};
 use glam::{Vec3, Vec4};
@@ -8,7 +8,7 @@ use std::collections::HashSet;
 /// Floats of a vertex.
 pub(super) type Attributes = [f32; 12];
 
-/// What a vertex has beside its position.
+/// The attributes of a vertex except its position.
 pub(super) fn of(v: &Vertex) -> Attributes {
     let ([nx, ny, nz], [tx, ty, tz, tw], [u, w]) = (v.normal, v.tangent, v.uv);
     let ([u2, w2], color) = (v.uv_second, f32::from_bits(pack_color(v.color)));
@@ -30,7 +30,8 @@ pub(super) fn color_of(a: &Attributes) -> Vec4 {
     (root * root).extend(alpha)
 }
 
-/// One byte per channel. Red, green and blue are stored as square roots, because linear bytes are too coarse near black.
+/// One byte per channel. Red, green and blue are stored as square roots, because linear bytes are
+/// too coarse near black.
 pub(super) fn pack_color([r, g, b, alpha]: [f32; 4]) -> u32 {
     u32::from_le_bytes([r.sqrt(), g.sqrt(), b.sqrt(), alpha].map(|c| (c * 255.0).round() as u8))
 }
@@ -53,8 +54,9 @@ pub(super) fn colored_materials(scene: &Scene) -> HashSet<u32> {
     found
 }
 
-/// Specialisation constants of `common/scene.glsl`: whether there are colours, and whether any lookup needs more than the
-/// sampler and the first set. Software devices execute code behind branches that nothing takes.
+/// Specialisation constants of `common/scene.glsl`: whether there are colours, and whether any
+/// lookup needs more than the sampler and the first set. Software devices execute code behind
+/// branches that nothing takes.
 pub(super) fn constants(scene: &Scene, colored: &HashSet<u32>) -> Vec<(u32, u32)> {
     const COLORS: u32 = 2040;
     const LOOKUPS: u32 = 2041;

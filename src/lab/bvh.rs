@@ -1,7 +1,8 @@
-//! A hierarchy over all triangles of a scene in one pose, for shaders that trace rays (`shaders/reference/intersect.glsl`).
+//! A hierarchy over all triangles of a scene in one pose, for shaders that trace rays
+//! (`shaders/reference/intersect.glsl`).
 
 use super::emitters::Emitters;
-use crate::graph::host::DrawBlock;
+use super::interface::DrawBlock;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec3A};
 use obvhs::bvh2::Bvh2;
@@ -19,16 +20,17 @@ struct TriangleBlock {
     b: [f32; 3],
     first_index: u32,
     c: [f32; 3],
-    /// The highest bit: an alpha mask. The others: [`Emitters::number`](super::emitters::Emitters::number).
+    /// The highest bit: an alpha mask. The others:
+    /// [`Emitters::number`](super::emitters::Emitters::number).
     flags: u32,
 }
 
-/// What the triangles of a scene are, whatever its pose.
+/// The triangles of a scene, independent of its pose.
 pub(super) struct Soup<'a> {
     pub positions: &'a [f32],
     pub indices: &'a [u32],
     pub draws: &'a [DrawBlock],
-    /// Of each mesh.
+    /// First index of each mesh.
     pub first_index: &'a [u32],
     /// Whether the draw's material has an alpha mask.
     pub masked: &'a dyn Fn(&DrawBlock) -> bool,
@@ -43,7 +45,7 @@ pub(super) struct Hierarchy {
 /// Stack of the traversal in `trace.glsl`, which holds one node a level.
 const MAX_DEPTH: usize = 64;
 
-/// Bytes that the nodes and the triangles of so many triangles can take in any pose.
+/// Upper limits of the bytes of nodes and triangles in any pose, for a number of triangles.
 pub(super) fn capacity(triangles: usize) -> (usize, usize) {
     let triangles = triangles.max(1);
     (
@@ -52,7 +54,8 @@ pub(super) fn capacity(triangles: usize) -> (usize, usize) {
     )
 }
 
-/// Builds the hierarchy; `model` is the pose of an instance. Costs about a second a million triangles.
+/// Builds the hierarchy; `model` is the pose of an instance. Costs about a second a million
+/// triangles.
 pub(super) fn build(
     soup: &Soup<'_>,
     emitters: &Emitters,
@@ -67,7 +70,8 @@ pub(super) fn build(
             v2: Vec3A::from(t.c),
         })
         .collect();
-    // A leaf of one, and nothing in it, where there are no triangles: the shader always reads a root.
+    // A leaf of one, and nothing in it, where there are no triangles: the shader always reads a
+    // root.
     let (nodes, order) = if corners.is_empty() {
         (
             vec![Bvh2Node::new(
@@ -115,7 +119,8 @@ fn triangles(
         };
         for first_index in (draw.first_index..draw.first_index + draw.index_count).step_by(3) {
             let [a, b, c] = [0, 1, 2].map(|k| corner(first_index + k));
-            // Impossible places would spread through the boxes; such a triangle is nowhere to be hit.
+            // Impossible places would spread through the boxes; such a triangle is nowhere to be
+            // hit.
             if [a, b, c].iter().flatten().all(|x| x.is_finite()) {
                 blocks.push(TriangleBlock {
                     a,
@@ -131,13 +136,13 @@ fn triangles(
     blocks
 }
 
-/// Nodes of this level are roots of balanced trees, if they are not leaves. With the levels of 2^28 triangles below,
-/// that is less than [`MAX_DEPTH`].
+/// Nodes of this level are roots of balanced trees, if they are not leaves. With the levels of 2^28
+/// triangles below, that is less than [`MAX_DEPTH`].
 const EVEN_FROM: usize = 32;
 
-/// The same triangles in a tree that the shader's stack holds: chains of ever larger triangles, and many triangles in one
-/// place, make a hierarchy by surface area deep. Below [`EVEN_FROM`] levels triangles are halved by their middles, which
-/// costs rays that come there some more boxes.
+/// The same triangles in a tree that the shader's stack holds: chains of ever larger triangles, and
+/// many triangles in one place, make a hierarchy by surface area deep. Below [`EVEN_FROM`] levels
+/// triangles are halved by their middles, which costs rays that come there some more boxes.
 fn evened(bvh: &Bvh2, corners: &[Triangle]) -> (Vec<Bvh2Node>, Vec<u32>) {
     let (mut nodes, mut order) = (vec![Bvh2Node::default()], Vec::with_capacity(corners.len()));
     let mut open = vec![(0, 0, 0)];

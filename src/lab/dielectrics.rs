@@ -1,4 +1,4 @@
-//! What the scene's dielectrics reflect, each kind once: most scenes have one.
+//! Reflectance of the scene's dielectrics, each kind once. Most scenes have one.
 
 use crate::scene::Material;
 use glam::Vec4;

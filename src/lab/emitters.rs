@@ -2,7 +2,7 @@
 
 use super::attributes::{Attributes, color_of, uv_of};
 use super::bvh::Soup;
-use crate::graph::host::{EmitterBlock, InstanceBlock};
+use super::interface::{EmitterBlock, InstanceBlock};
 use crate::scene::{Lookup, Scene, Side, SmallPicture};
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use std::collections::{HashMap, HashSet};
@@ -10,11 +10,12 @@ use std::collections::{HashMap, HashSet};
 /// More emitting triangles than these are met by rays alone: 64 bytes each.
 const MOST_EMITTERS: usize = 1 << 20;
 
-/// Emitters whose brightest place is not brighter than the mean of all surfaces by so many times are met by rays as well as they could
-/// be drawn.
+/// Ratio of an emitter's largest radiance to the mean of all surfaces up to which rays find it as
+/// well as emitter samples do.
 const UNEVEN: f64 = 4.0;
 
-/// What is closed and larger than this part of the scene's diagonal may have the scene inside: light of both sides counts.
+/// Fraction of the scene's diagonal above which a closed emitter may enclose the scene, so that
+/// both sides emit.
 const LARGEST_LAMP: f32 = 0.25;
 
 /// Most parts of a textured triangle's edge. Each of its parts has one radiance.
@@ -23,7 +24,7 @@ const MOST_PARTS: u32 = 8;
 /// Parts of an edge if the corners of the triangle have different colours.
 const TINTED_PARTS: u32 = 4;
 
-/// Texels of an emission texture along an edge that parts are told by.
+/// Texels of an emission texture along an edge of a part.
 const TEXELS: u32 = 128;
 
 /// A triangle that emits, by parts of one radiance.
@@ -47,12 +48,12 @@ pub(super) struct Emitters {
     /// Area of all triangles, also of those that emit nothing [m^2].
     surface: f64,
     list: Vec<Emitter>,
-    /// By draw and first index: the number of the first part, and how many parts an edge has.
+    /// Number of the first part, and count of parts along an edge, by draw and first index.
     numbers: HashMap<(u32, u32), (u32, u32)>,
 }
 
 impl Emitters {
-    /// Of all triangles that emit; none where they are more than [`MOST_EMITTERS`].
+    /// Parts of all emitting triangles; none if there are more than [`MOST_EMITTERS`].
     pub(super) fn new(scene: &Scene, soup: &Soup<'_>, attributes: &[Attributes]) -> Emitters {
         let mut pictures: HashMap<u32, Option<SmallPicture>> = HashMap::new();
         let mut outsides: HashMap<u32, Vec<Option<Side>>> = HashMap::new();
@@ -140,7 +141,8 @@ impl Emitters {
                 });
             }
         }
-        // Places are drawn by number, and numbers are of what triangles hold alone: no file's order shows.
+        // Places are drawn by number, and numbers are of what triangles hold alone: no file's order
+        // shows.
         let content = |e: &Emitter| {
             let bits = |v: &Vec3| v.to_array().map(f32::to_bits);
             (
@@ -158,8 +160,8 @@ impl Emitters {
         found
     }
 
-    /// Where a triangle's parts are in the buffer, for rays that hit it: the number of the first and one, and from bit 24 on the
-    /// parts of an edge; 0 of one that emits nothing.
+    /// Where a triangle's parts are in the buffer, for rays that hit it: the number of the first
+    /// and one, and from bit 24 on the parts of an edge; 0 of one that emits nothing.
     pub(super) fn number(&self, draw: u32, first_index: u32) -> u32 {
         self.numbers
             .get(&(draw, first_index))
@@ -176,8 +178,8 @@ impl Emitters {
         self.list.iter().any(moves)
     }
 
-    /// Content of the buffer `emitters` in the pose of these instances, with corners from positions and indices where vertices
-    /// have moved.
+    /// Content of the buffer `emitters` in the pose of these instances, with corners from positions
+    /// and indices where vertices have moved.
     pub(super) fn buffer(
         &self,
         instances: &[InstanceBlock],
@@ -260,7 +262,8 @@ fn luminance(c: Vec3) -> f32 {
     c.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// Each is drawn as often as its power says, by one lookup (Walker 1977; Vose 1991), and a place on it by area.
+/// Each is drawn as often as its power says, by one lookup (Walker 1977; Vose 1991), and a place on
+/// it by area.
 fn choose(blocks: &mut [EmitterBlock], power: &[f64], all: f64) {
     let mut share: Vec<f64> = power.iter().map(|p| p / all * power.len() as f64).collect();
     let (mut small, mut large): (Vec<usize>, Vec<usize>) =
@@ -357,7 +360,7 @@ impl Shine {
     }
 }
 
-/// How finely a triangle's texture must be told.
+/// Number of parts along an edge that a triangle's texture needs.
 fn parts_of(picture: &SmallPicture, uvs: [Vec2; 3]) -> u32 {
     let size = Vec2::new(picture.width as f32, picture.height as f32);
     let longest = [(0, 1), (1, 2), (2, 0)]
@@ -371,8 +374,9 @@ fn parts_of(picture: &SmallPicture, uvs: [Vec2; 3]) -> u32 {
     }
 }
 
-/// Corners of a part of a triangle whose edges have so many: row by row from the edge of `a` and `b`, in turns such as the whole and
-/// such as its mirror image.
+/// Corners of a part of a triangle with `parts` parts along an edge. Parts are counted row by row
+/// from the edge of `a` and `b`. Parts with the orientation of the triangle alternate with mirrored
+/// ones.
 fn part_corners<V>(corners: [V; 3], parts: u32, part: u32) -> [V; 3]
 where
     V: Copy

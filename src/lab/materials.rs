@@ -1,6 +1,7 @@
-//! Material textures as a few 2D arrays, one for each size and format: works without descriptor indexing.
+//! Material textures as a few 2D arrays, one for each size and format: works without descriptor
+//! indexing.
 
-use crate::graph::externals::MATERIAL_ARRAYS;
+use super::interface::MATERIAL_TEXTURES;
 use crate::scene::{
     Lookup, MAX_TEXTURE_KINDS, SHARED_EDGE, Scene, Texture, TextureFormat, TextureKind, Wrap,
     keep_their_size,
@@ -14,7 +15,7 @@ use std::sync::Arc;
 const NO_TEXTURE: u32 = u32::MAX;
 
 /// There is an array for each kind that a scene keeps.
-const _: () = assert!(MAX_TEXTURE_KINDS == MATERIAL_ARRAYS);
+const _: () = assert!(MAX_TEXTURE_KINDS == MATERIAL_TEXTURES.len());
 
 /// The arrays, the handle of each texture, and bytes on the device.
 pub(super) struct MaterialTextures {
@@ -76,7 +77,7 @@ pub(super) fn upload(
             &parts,
         )?;
     }
-    while out.views.len() < MATERIAL_ARRAYS {
+    while out.views.len() < MATERIAL_TEXTURES.len() {
         add(
             gpu,
             upload,
@@ -125,7 +126,8 @@ fn add(
     Ok(())
 }
 
-/// Textures of at most as many kinds as there are arrays: the rarest are resampled to one common size.
+/// Textures of at most as many kinds as there are arrays: the rarest are resampled to one common
+/// size.
 fn fit(scene: &Scene, bc: bool) -> Vec<Cow<'_, Texture>> {
     let mut list: Vec<Cow<'_, Texture>> = scene
         .textures

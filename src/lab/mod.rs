@@ -1,23 +1,23 @@
-//! The lab: a device and what is loaded on it; turns an experiment into frames.
+//! The lab: a device with a loaded scene and graph. It turns an experiment into frames.
 
 mod attributes;
 mod bvh;
 mod dielectrics;
 mod emitters;
+mod interface;
 mod materials;
 mod parts;
 mod scene;
 mod session;
 mod sky;
 mod texels;
-mod variables;
 mod view;
 mod workspace;
 
+pub use interface::{environment, load};
 pub use parts::{focus_of, parts_of};
 pub use scene::SceneGpu;
 pub use texels::Texels;
-pub use variables::environment;
 pub use view::Viewpoint;
 pub use workspace::{Loaded, Workspace};
 
@@ -25,7 +25,6 @@ use crate::diagnostics::{Diagnostic, nearest};
 use crate::experiment::{CameraChoice, Experiment, ExperimentError, PlacedCamera};
 use crate::files::FileError;
 use crate::graph::expr::Env;
-use crate::graph::externals::{EXTERNALS, RAY_RESOURCES};
 use crate::graph::link::{Linked, Target, runs};
 use crate::graph::param::{Params, Value};
 use crate::graph::plan::{Plan, plan};
@@ -63,10 +62,10 @@ pub enum LabError {
         /// Why not.
         why: String,
     },
-    /// The validation layer had so many messages.
+    /// The validation layer printed messages; their number.
     #[error("the Vulkan validation layer had {0} messages (see above)")]
     Validation(usize),
-    /// Anything else that the user asked for and cannot have.
+    /// Any other request that cannot be fulfilled.
     #[error("{0}")]
     Request(String),
 }
@@ -82,7 +81,7 @@ impl From<ExperimentError> for LabError {
 }
 
 impl LabError {
-    /// The error of making something, for what an encoder says.
+    /// The error of an encoder as an error of making something.
     pub fn making<E: std::fmt::Display>(what: impl Into<String>) -> impl FnOnce(E) -> LabError {
         let what = what.into();
         move |why| LabError::Make {
@@ -91,7 +90,8 @@ impl LabError {
         }
     }
 
-    /// The error of an experiment's scene. If the scene is missing, the place is the experiment's line.
+    /// The error of an experiment's scene. If the scene is missing, the place is the experiment's
+    /// line.
     pub fn of_scene(experiment: &Experiment, error: SceneError) -> LabError {
         let found = match &error {
             SceneError::NotFound { .. } | SceneError::Read { .. } => {
@@ -124,7 +124,8 @@ pub struct Lab {
     pub gpu: Arc<Gpu>,
 }
 
-/// Parts of a session that another one can be built from: pipelines, textures, buffers, the scene on the device.
+/// Parts of a session that another one can be built from: pipelines, textures, buffers, the scene
+/// on the device.
 pub struct ReusableParts {
     parts: Parts,
     scene: Arc<Scene>,
@@ -147,7 +148,7 @@ pub struct Session {
     pub params: Params,
     /// The graph's named values with these.
     values: Vec<Value>,
-    /// What runs.
+    /// The running passes.
     pub program: Program,
     /// The scene.
     pub scene: Arc<Scene>,
@@ -179,7 +180,7 @@ impl Lab {
         })
     }
 
-    /// Loads what an experiment needs. `wanted` are the resources whose content will be read.
+    /// Loads everything for an experiment. `wanted`: resources that will be read back.
     ///
     /// # Errors
     /// Everything that can be wrong with graph, shaders, parameters, scene, camera or device.
@@ -201,8 +202,8 @@ impl Lab {
         ))
     }
 
-    /// Makes a session, from parts of one in use where they fit; see [`Session::swap_in`]. Shaders that `loaded` lacks
-    /// and the experiment runs are compiled.
+    /// Makes a session, from parts of one in use where they fit; see [`Session::swap_in`]. Shaders
+    /// that `loaded` lacks and the experiment runs are compiled.
     ///
     /// # Errors
     /// As [`Lab::prepare`].
@@ -225,7 +226,7 @@ impl Lab {
         wanted.extend(graph.checked_with(&wanted));
         let viewpoint = viewpoint_of(experiment, &scene)?;
         let plan = plan(&set, &linked, &wanted, &self.gpu.info).map_err(LabError::Input)?;
-        let rays = traces_rays(&linked, &plan);
+        let rays = traces_rays(&graph, &linked, &plan);
         let fits = |s: &&ReusableParts| {
             Arc::ptr_eq(&s.scene, &scene)
                 && s.max_edge == plan.max_edge
@@ -248,7 +249,8 @@ impl Lab {
                 )?
             }
         };
-        // What textures and buffers hold is of their scene: of another one only the pipelines are taken.
+        // What textures and buffers hold is of their scene: of another one only the pipelines are
+        // taken.
         let parts = match reuse {
             Some(reuse) if Arc::ptr_eq(&reuse.scene, &scene) => reuse.parts.clone(),
             Some(reuse) => reuse.parts.pipelines_only(),
@@ -278,15 +280,17 @@ impl Lab {
     }
 }
 
-/// Whether a pass that runs asks for the hierarchy over the scene's triangles.
-fn traces_rays(linked: &[Linked], plan: &Plan) -> bool {
+/// Whether a pass that runs binds a resource that scenes have on request only: those that rays
+/// need.
+fn traces_rays(graph: &Graph, linked: &[Linked], plan: &Plan) -> bool {
     let bound = plan.steps.iter().flat_map(|s| &linked[s.pass].bound);
-    bound.flat_map(|b| &b.cases).any(
-        |c| matches!(c.target, Target::External(e) if RAY_RESOURCES.contains(&EXTERNALS[e].name)),
-    )
+    let is_requested = |target: &Target| matches!(target, Target::External(e) if graph.interface.resources[*e].on_request);
+    bound
+        .flat_map(|b| &b.cases)
+        .any(|c| is_requested(&c.target))
 }
 
-/// The parameters of an experiment: defaults, then what it sets.
+/// The parameters of an experiment: defaults, then its settings.
 ///
 /// # Errors
 /// Unknown names and wrong values, all of them, with their places.
@@ -342,7 +346,8 @@ pub fn no_texture(graph: &Graph, name: &str) -> LabError {
     ))
 }
 
-/// The scene with triangles no longer than `edge`, unless the device cannot hold their vertices: splitting takes long.
+/// The scene with triangles no longer than `edge`, unless the device cannot hold their vertices:
+/// splitting takes long.
 fn split(scene: &Scene, edge: f32, limit: u32) -> Result<Scene, LabError> {
     let bytes = scene.least_split_bytes(edge);
     if bytes > f64::from(limit) {

@@ -25,7 +25,7 @@ pub fn focus_of(graph: &Graph) -> Option<&LightPart> {
 }
 
 impl Session {
-    /// The parts of the last frame's light. Only those are there whose textures were `wanted` and that the present
+    /// The light components of the last frame: those with `wanted` textures that the present
     /// parameters make.
     ///
     /// # Errors

@@ -1,15 +1,17 @@
-//! A scene on the device, as the fixed named resources that shaders read (`shaders/common/scene.glsl`).
+//! A scene on the device, as the fixed named resources that shaders read
+//! (`shaders/common/scene.glsl`).
 
 use super::attributes::{self, Attributes};
 use super::bvh::{self, Soup};
 use super::dielectrics::Dielectrics;
 use super::emitters::Emitters;
+use super::interface::{
+    CameraBlock, DrawBlock, InstanceBlock, LightBlock, MATERIAL_TEXTURES, MaterialBlock,
+    SceneInfoBlock, ShadowBlock,
+};
 use super::materials;
 use super::sky;
 use super::view::lights;
-use crate::graph::host::{
-    CameraBlock, DrawBlock, InstanceBlock, LightBlock, MaterialBlock, SceneInfoBlock, ShadowBlock,
-};
 use crate::graph::run::{Geometry, SceneResources, Update};
 use crate::scene::{Environment, Instance, Light, Lookup, Material, Scene, Vertex, in_world};
 use crate::vulkan::{Buffer, Gpu, Result, Sampler, SamplerDesc, Upload, VulkanError, vk};
@@ -21,7 +23,7 @@ use std::sync::Arc;
 /// A scene's resources on the device.
 #[derive(Clone)]
 pub struct SceneGpu {
-    /// By name, with what is drawn.
+    /// Resources by name, and the draws.
     pub resources: SceneResources,
     /// The block `camera`, written every frame.
     pub camera: Arc<Buffer>,
@@ -36,19 +38,19 @@ pub struct SceneGpu {
     sent: Vec<InstanceBlock>,
     /// When vertices are as they were sent last, s.
     posed_at: f32,
-    /// What was uploaded, with its triangles split if they were.
+    /// The uploaded scene, with split triangles if they were split.
     scene: Arc<Scene>,
     emitters: Arc<Emitters>,
 }
 
-/// What the scene is lit by, as it was changed last.
+/// The present lighting of the scene.
 #[derive(Clone)]
 struct Lighting {
     lights: Vec<Light>,
     /// Factor of the sky's picture, or its radiance.
     sky: Vec3,
     environment: Option<Environment>,
-    /// What the picture is divided by on the device.
+    /// Divisor of the picture on the device.
     sky_scale: f32,
 }
 
@@ -88,7 +90,8 @@ impl Lighting {
 const CAMERA_BYTES: usize = size_of::<CameraBlock>();
 
 impl SceneGpu {
-    /// Uploads a scene into a world that begins at `origin`; `rays`: with the hierarchy that rays need.
+    /// Uploads a scene into a world that begins at `origin`; `rays`: with the hierarchy that rays
+    /// need.
     ///
     /// # Errors
     /// Out of memory; a hierarchy that is too deep.
@@ -104,7 +107,8 @@ impl SceneGpu {
         let draws = draws(scene, &first_index);
         let triangles = triangles(&draws, &indices, &positions, &attributes);
         let opaque = draws.iter().filter(|d| !is_masked(scene, d)).count();
-        // One command (VkDrawIndexedIndirectCommand) a draw; the instance number tells the shaders which.
+        // One command (VkDrawIndexedIndirectCommand) a draw; the instance number tells the shaders
+        // which.
         let commands: Vec<[u32; 5]> = (0u32..)
             .zip(&draws)
             .map(|(i, d)| [d.index_count, 1, d.first_index, 0, i])
@@ -237,14 +241,11 @@ impl SceneGpu {
                 anisotropic: true,
             },
         )?);
-        let names = crate::graph::externals::EXTERNALS
-            .iter()
-            .map(|e| e.name)
-            .filter(|n| n.starts_with("materialTexture"));
         Ok(SceneGpu {
             resources: SceneResources {
                 buffers,
-                textures: names
+                textures: MATERIAL_TEXTURES
+                    .into_iter()
                     .zip(textures.views)
                     .chain([("skyTexture", sky.view)])
                     .collect(),
@@ -274,8 +275,8 @@ impl SceneGpu {
         })
     }
 
-    /// The same geometry and textures with buffers of its own for what changes from frame to frame, so that two
-    /// programs can run on one upload.
+    /// The same geometry and textures with buffers of its own for what changes from frame to frame,
+    /// so that two programs can run on one upload.
     ///
     /// # Errors
     /// Out of memory.
@@ -355,11 +356,12 @@ impl SceneGpu {
         })
     }
 
-    /// Buffers that change with time: the poses of animated instances and of meshes that deform, when they moved. Vertices that
-    /// deform are posed by all threads of the CPU and sent whole; with rays, the hierarchy over all triangles is built anew.
+    /// Buffers that change with time: the poses of animated instances and of deforming meshes, when
+    /// they moved. All threads of the CPU pose the vertices, which are sent whole. With rays, the
+    /// hierarchy over all triangles is rebuilt.
     ///
     /// # Errors
-    /// A pose whose hierarchy is too deep.
+    /// A pose with a hierarchy that is too deep.
     pub fn updates(&mut self, time: f64, first: bool) -> Result<Vec<Update>> {
         let scene = self.scene.clone();
         let previous = (!first).then_some(self.sent.as_slice());
@@ -463,8 +465,9 @@ impl SceneGpu {
         self.resources.buffers.contains_key("bvhNodes")
     }
 
-    /// Buffers that change with colours, directions, positions and cone angles of the lights, and with the sky. The
-    /// scene has as many lights and shadow maps as the one that was uploaded, and its geometry.
+    /// Buffers that change with colours, directions, positions and cone angles of the lights, and
+    /// with the sky. The scene has as many lights and shadow maps as the one that was uploaded, and
+    /// its geometry.
     pub fn set_lights(&mut self, list: &[Light], sky: Vec3) -> Vec<Update> {
         self.lighting.lights = list.to_vec();
         self.lighting.sky = sky;
@@ -560,8 +563,8 @@ fn is_masked(scene: &Scene, draw: &DrawBlock) -> bool {
         .is_some_and(|m| m.alpha_cutoff > 0.0)
 }
 
-/// Positions (3 floats), attributes (3 vec4), indices of all meshes one after another with these vertices, and each mesh's
-/// first index.
+/// Positions (3 floats), attributes (3 vec4), indices of all meshes one after another with these
+/// vertices, and each mesh's first index.
 fn vertices(
     scene: &Scene,
     posed: &[Cow<'_, [Vertex]>],
@@ -598,8 +601,9 @@ fn draws(scene: &Scene, first_index: &[u32]) -> Vec<DrawBlock> {
     list
 }
 
-/// (draw, first of its indices) of every triangle, draw by draw. Neighbours in space are neighbours in the list, and the order
-/// is of what the triangles hold alone: where two are in one place it decides which is seen.
+/// (draw, first of its indices) of every triangle, draw by draw. Neighbours in space are neighbours
+/// in the list. The order depends on the content of triangles alone, because it decides which of
+/// two coincident ones is visible.
 fn triangles(
     draws: &[DrawBlock],
     indices: &[u32],
@@ -651,7 +655,8 @@ fn triangles(
     list
 }
 
-/// The bits of three numbers below 1024 in turns: neighbours in space have neighbouring codes (Morton 1966).
+/// Interleaves the bits of three numbers below 1024: neighbours in space have neighbouring codes
+/// (Morton 1966).
 fn morton(p: Vec3) -> u32 {
     let spread = |v: f32| (0..10).fold(0, |word, bit| word | (v as u32 >> bit & 1) << (3 * bit));
     spread(p.x) | spread(p.y) << 1 | spread(p.z) << 2
@@ -685,7 +690,8 @@ fn material(
     }
 }
 
-/// `deforms`: vertices move too. No matrix tells of that, so those before are none, which counts as a move.
+/// `deforms`: vertices move too. Matrices do not show it, so the previous ones are zero, which
+/// counts as a move.
 fn instances(
     scene: &Scene,
     origin: Vec3,

@@ -1,11 +1,11 @@
-//! A graph that runs in a scene: frames, what changes between them, and what is read of them.
+//! A graph that runs in a scene: frames, changes between them, and reading results.
 
 use super::{Lab, LabError, ReusableParts, Session, Texels, Viewpoint, no_texture, view};
 use crate::experiment::PlacedCamera;
 use crate::graph::link::{Layouts, runs, table};
 use crate::graph::param::Params;
 use crate::graph::plan::plan;
-use crate::graph::run::{FrameTimes, Redo, Update};
+use crate::graph::run::{Execution, FrameTimes, Update};
 use crate::graph::table::Table;
 use crate::graph::{Evaluated, signed};
 use crate::scene::{Camera, Light};
@@ -25,8 +25,8 @@ impl Session {
         self.program.plan.convergence.changed as usize
     }
 
-    /// Forgets what frames left: the next frame is like the first one of a new session. Returns the times of the frames
-    /// that finished meanwhile.
+    /// Forgets what frames left: the next frame is like the first one of a new session. Returns the
+    /// times of the frames that finished meanwhile.
     ///
     /// # Errors
     /// The device was lost.
@@ -48,7 +48,8 @@ impl Session {
         }
     }
 
-    /// Parts for a session that renders at the same time: pipelines, geometry and textures of the scene.
+    /// Parts for a session that renders at the same time: pipelines, geometry and textures of the
+    /// scene.
     pub fn share(&self) -> ReusableParts {
         let all = self.reusable_parts();
         ReusableParts {
@@ -58,8 +59,8 @@ impl Session {
         }
     }
 
-    /// Takes the place of the session that this one was made from, at a frame's border: textures keep their content,
-    /// time and camera go on.
+    /// Takes the place of the session that this one was made from, at a frame's border: textures
+    /// keep their content, time and camera go on.
     ///
     /// # Errors
     /// The device was lost.
@@ -76,8 +77,8 @@ impl Session {
         Ok(())
     }
 
-    /// Sets parameters if that needs no other textures, passes, shaders or pipelines: then it is a buffer write, and
-    /// `true`.
+    /// Sets parameters if that needs no other textures, passes, shaders or pipelines: then it is a
+    /// buffer write, and `true`.
     ///
     /// # Errors
     /// Values that the graph cannot be planned with.
@@ -119,14 +120,14 @@ impl Session {
         self.time = time;
     }
 
-    /// From the next frame on, does all passes or those whose outcome changes.
-    pub fn set_redo(&mut self, redo: Redo) {
-        self.program.set_redo(redo);
+    /// Sets which passes frames run, from the next one on.
+    pub fn set_execution(&mut self, execution: Execution) {
+        self.program.set_execution(execution);
     }
 
     /// What frames do.
-    pub fn redo(&self) -> Redo {
-        self.program.redo()
+    pub fn execution(&self) -> Execution {
+        self.program.execution()
     }
 
     /// Copies this texture to the CPU with every frame ([`FrameTimes::picture`]).
@@ -134,7 +135,8 @@ impl Session {
         self.program.show(self.graph.texture(texture));
     }
 
-    /// Runs one frame. The times that come back are those of an earlier frame, which has finished meanwhile.
+    /// Runs one frame. The times that come back are those of an earlier frame, which has finished
+    /// meanwhile.
     ///
     /// # Errors
     /// The device was lost.
@@ -168,8 +170,9 @@ impl Session {
         Ok(self.program.run(&updates)?)
     }
 
-    /// Changes the colours, places and directions of the scene's lights, and its sky, from the next frame on. False, and
-    /// nothing changes, with another number of lights or shadow maps: that needs a new session.
+    /// Changes the colours, places and directions of the scene's lights, and its sky, from the next
+    /// frame on. False, and nothing changes, with another number of lights or shadow maps: that
+    /// needs a new session.
     pub fn set_lights(&mut self, lights: &[Light], sky: Vec3) -> bool {
         let same = lights.len() == self.scene.lights.len()
             && view::shadow_view_count(lights) == view::shadow_view_count(&self.scene.lights)
@@ -181,17 +184,19 @@ impl Session {
         same
     }
 
-    /// Turns the sky's picture to that rotation about y in degrees, from the next frame on, and its sun with it.
+    /// Turns the sky's picture to that rotation about y in degrees, from the next frame on, and its
+    /// sun with it.
     pub fn turn_sky(&mut self, rotation: f32) {
         self.light_updates = self.scene_gpu.turn_sky(rotation);
     }
 
-    /// Sees the next frames from another camera. The frame before stays known to what compares frames.
+    /// Sees the next frames from another camera. The frame before stays known to what compares
+    /// frames.
     pub fn place_camera(&mut self, placed: &PlacedCamera) {
         self.viewpoint.place_camera(placed, self.bounds);
     }
 
-    /// Runs so many frames, and waits for them.
+    /// Runs `count` frames, and waits for them.
     ///
     /// # Errors
     /// The device was lost.
@@ -228,7 +233,7 @@ impl Session {
             let Some(buffer) = self.graph.buffer(&check.field.value.buffer) else {
                 continue;
             };
-            // Mistakes were told with the shaders; what none of them declares none of them writes.
+            // Linking reported mistakes. A block that no shader declares is not written.
             let Ok(Some(word)) = layouts.check(&check.field) else {
                 continue;
             };
@@ -255,8 +260,8 @@ impl Session {
         self.texels_in(name, mip, layer, None)
     }
 
-    /// Reads a slice of a texture's mip: for a volume the texels at `slice` along `axis`, for others all of them. The
-    /// result is 2D: y z for a cut across x, x z across y, x y across z.
+    /// Reads a slice of a texture's mip: for a volume the texels at `slice` along `axis`, for
+    /// others all of them. The result is 2D: y z for a cut across x, x z across y, x y across z.
     ///
     /// # Errors
     /// As [`Session::texels`].

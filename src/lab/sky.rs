@@ -1,4 +1,5 @@
-//! The sky's picture on the device: prefiltered for rays and cones, and as a density for those who draw directions from it.
+//! The sky's picture on the device: prefiltered for rays and cones, and as a density for sampling
+//! directions.
 
 use crate::scene::environment::{Level, luminance};
 use crate::scene::{Environment, SkyPicture};
@@ -6,7 +7,7 @@ use crate::vulkan::{Gpu, Image, ImageDesc, Result, Upload, View, ViewDesc, vk};
 use half::f16;
 use std::sync::Arc;
 
-/// Largest radiance of a texel; what is brighter scales the picture down and its factor up.
+/// Largest radiance of a texel. A brighter picture is scaled down, and its factor up.
 const MOST: f32 = 60_000.0;
 
 /// The texture `skyTexture`.
@@ -15,7 +16,7 @@ pub(super) struct SkyTexture {
     pub bytes: u64,
 }
 
-/// What the picture is divided by on the device.
+/// Divisor of the picture on the device.
 pub(super) fn scale_of(environment: Option<&Environment>) -> f32 {
     let texels = environment.map_or(&[][..], |e| e.picture.texels());
     texels.iter().flatten().fold(MOST, |most, v| most.max(*v)) / MOST
@@ -112,9 +113,9 @@ fn bytes(level: &Level, scale: f32) -> Vec<u8> {
         .collect()
 }
 
-/// The words of `skyTexels` (`shaders/reference/sky.glsl`): width, height, two words of nothing; radiance around the sun;
-/// how likely the rows up to each are, from 0 to 1; how likely in each row the texels up to each are; texels of two
-/// words, red and green, blue and whether it is the sun's.
+/// The words of `skyTexels` (`shaders/reference/sky.glsl`): width, height, two words of nothing;
+/// radiance around the sun; how likely the rows up to each are, from 0 to 1; how likely in each row
+/// the texels up to each are; texels of two words, red and green, blue and whether it is the sun's.
 pub(super) fn texels(environment: Option<&Environment>) -> Vec<u32> {
     let nothing = SkyPicture {
         level: Level {

@@ -1,4 +1,4 @@
-//! What a texture holds, as numbers.
+//! The content of a texture as numbers.
 
 use crate::metrics::Linear;
 use crate::vulkan::Format;
@@ -16,7 +16,8 @@ pub struct Texels {
 }
 
 impl Texels {
-    /// Floats, four a texel, missing channels 0 and missing alpha 1. Slices of volumes follow one another downwards.
+    /// Floats, four a texel, missing channels 0 and missing alpha 1. Slices of volumes follow one
+    /// another downwards.
     pub fn floats(&self) -> Vec<[f32; 4]> {
         let f = self.format;
         if f.name == "rgba32f" {
@@ -71,7 +72,8 @@ fn decode(name: &str, channels: Channels, count: u32, t: &[u8]) -> [f32; 4] {
     out
 }
 
-/// One channel of B10G11R11_UFLOAT (Vulkan specification, "Unsigned 11-Bit Floating-Point Numbers").
+/// One channel of B10G11R11_UFLOAT (Vulkan specification, "Unsigned 11-Bit Floating-Point
+/// Numbers").
 fn small_float(word: u32, channel: usize) -> f32 {
     let (bits, mantissa_bits) = match channel {
         0 => (word & 0x7ff, 6),

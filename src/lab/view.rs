@@ -1,11 +1,11 @@
 //! Cameras and shadow views as the shaders see them.
 
+use super::interface::{CameraBlock, LightBlock, ShadowBlock};
 use crate::experiment::PlacedCamera;
-use crate::graph::host::{CameraBlock, LightBlock, ShadowBlock};
 use crate::scene::{Camera, Light, LightKind, Scene, defaults};
 use glam::{Mat4, Vec3, camera::rh::proj::vulkan};
 
-/// A camera with what it saw in the frame before.
+/// A camera with its view of the last frame.
 #[derive(Clone, Debug)]
 pub struct Viewpoint {
     /// The camera.
@@ -22,12 +22,13 @@ impl Viewpoint {
         }
     }
 
-    /// A camera written out in an experiment; a near plane that it leaves out is from the scene's size.
+    /// A camera written out in an experiment; a near plane that it leaves out is from the scene's
+    /// size.
     pub fn placed(placed: &PlacedCamera, scene: &Scene) -> Viewpoint {
         Viewpoint::new(&camera(placed, scene.bounds()))
     }
 
-    /// Another camera, in a scene of these bounds; what was seen in the frame before stays known.
+    /// Another camera, in a scene of these bounds. The view of the last frame is kept.
     pub fn place_camera(&mut self, placed: &PlacedCamera, bounds: (Vec3, Vec3)) {
         self.camera = camera(placed, bounds);
     }
@@ -41,8 +42,9 @@ impl Viewpoint {
         Viewpoint::placed(&PlacedCamera::new(eye.into(), centre.into(), 50.0), scene)
     }
 
-    /// The content of the block `camera` in a world that begins at `origin`, and on to the next frame. Frames are those that
-    /// went before, and of them the last in which nothing but the camera changed.
+    /// The content of the block `camera` in a world that begins at `origin`, and on to the next
+    /// frame. Frames are those that went before, and of them the last in which nothing but the
+    /// camera changed.
     pub fn uniform(
         &mut self,
         origin: Vec3,
@@ -63,7 +65,8 @@ impl Viewpoint {
         let view = glam::camera::rh::view::look_to_mat4(eye, direction, up);
         let aspect = size.0 as f32 / size.1 as f32;
         let fov_y = c.fov_y.clamp(1.0, 170.0).to_radians();
-        // Reversed depth: 1 at the near plane, 0 infinitely far away. Floats are as precise near 0 as it takes.
+        // Reversed depth: 1 at the near plane, 0 infinitely far away. Floats are as precise near 0
+        // as it takes.
         let projection = vulkan::perspective_infinite_reverse(fov_y, aspect, c.near);
         let view_projection = projection * view;
         let previous = self
@@ -107,8 +110,9 @@ fn camera(placed: &PlacedCamera, (low, high): (Vec3, Vec3)) -> Camera {
     }
 }
 
-/// Lights of a scene with these bounds, and the views of their shadow maps. Those beyond the first `own` stand for a part
-/// of the sky's picture. Lights and bounds are in the scene's world, what comes back is in one that begins at `origin`.
+/// Lights of a scene with these bounds, and the views of their shadow maps. Lights after the first
+/// `own` represent a part of the sky's picture. Lights and bounds are in the scene's world, results
+/// in the world with the origin `origin`.
 pub(super) fn lights(
     (lights, own): (&[Light], usize),
     (low, high): (Vec3, Vec3),
@@ -169,7 +173,8 @@ fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<Sh
         };
         glam::camera::rh::view::look_to_mat4(eye, direction, up)
     };
-    // Two centimetres, less in scenes below four metres. Smaller ones would cost maps of 16 bits their last digits.
+    // Two centimetres, less in scenes below four metres. Smaller ones would cost maps of 16 bits
+    // their last digits.
     let near = (0.005 * (high - low).length()).clamp(1e-6, 0.02);
     let far = corners
         .iter()
@@ -178,7 +183,8 @@ fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<Sh
         * 1.01;
     match light.kind {
         LightKind::Directional => {
-            // Orthographic, fitted to the scene's bounds, so depth is linear and no texel is wasted on the outside.
+            // Orthographic, fitted to the scene's bounds, so depth is linear and no texel is wasted
+            // on the outside.
             let view = look((low + high) * 0.5, light.direction);
             let (mut least, mut most) = (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN));
             for corner in corners {
@@ -210,7 +216,8 @@ fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<Sh
         ]
         .into_iter()
         .map(|direction| {
-            // A little more than 90 degrees, so that filtered lookups at the seams stay inside a face.
+            // A little more than 90 degrees, so that filtered lookups at the seams stay inside a
+            // face.
             let angle = std::f32::consts::FRAC_PI_2 + 0.01;
             let matrix =
                 vulkan::perspective(angle, 1.0, near, far) * look(light.position, direction);

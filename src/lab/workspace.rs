@@ -1,12 +1,13 @@
 //! The program's folders, and graphs read from them.
 
+use super::interface::load;
 use super::{LabError, environment, params_of};
 use crate::diagnostics::{Diagnostic, Place};
 use crate::experiment::Experiment;
 use crate::files::path_of;
 use crate::graph::link::{Linked, link};
 use crate::graph::link::{Runs, runs};
-use crate::graph::load::{Folders, load};
+use crate::graph::load::Folders;
 use crate::graph::param::{Params, Value};
 use crate::graph::{Evaluated, Graph};
 use crate::scene::Scene;
@@ -23,7 +24,7 @@ pub struct Loaded {
     pub graph: Arc<Graph>,
     /// The shaders of its passes.
     pub linked: Arc<Vec<Linked>>,
-    /// What was found and is no error.
+    /// Warnings.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -40,7 +41,8 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Finds the folders: `CONELAB_HOME`, else upwards from the working folder, else beside the program.
+    /// Finds the folders: `CONELAB_HOME`, else upwards from the working folder, else next to the
+    /// program.
     ///
     /// # Errors
     /// None of them has the folders.
@@ -93,7 +95,8 @@ impl Workspace {
         }
     }
 
-    /// The file of a graph: a bare name is looked up among the graphs, a path from here, then from the program's folder.
+    /// The file of a graph: a bare name is looked up among the graphs, a path from here, then from
+    /// the program's folder.
     pub fn graph_path(&self, name: &str) -> PathBuf {
         let given = path_of(name);
         if given.is_file() {
@@ -112,8 +115,8 @@ impl Workspace {
         }
     }
 
-    /// Everything that is wrong with a graph and its shaders, or worth knowing, whichever option its modules are set to;
-    /// needs no device.
+    /// Everything that is wrong with a graph and its shaders, or worth knowing, whichever option
+    /// its modules are set to; needs no device.
     pub fn check(&self, name: &str) -> Vec<Diagnostic> {
         let graph = match self.read(name) {
             Ok(graph) => graph,
@@ -183,8 +186,9 @@ impl Workspace {
         self.load(&experiment.graph)
     }
 
-    /// [`Workspace::load`] with the shaders of those passes alone that an experiment runs in a scene: a picture waits for no
-    /// other, and a mistake in another does not keep it away. [`Workspace::complete`] makes up for what is left out.
+    /// [`Workspace::load`] with only the shaders of passes that an experiment runs in a scene.
+    /// Other shaders cost no time and their mistakes do not prevent a picture.
+    /// [`Workspace::complete`] compiles the rest.
     ///
     /// # Errors
     /// All mistakes in the graph and in these shaders.
@@ -282,7 +286,8 @@ impl Workspace {
     }
 }
 
-/// The passes that an experiment runs. With parameters that are none, which is told elsewhere: all.
+/// The passes that an experiment runs; all if its parameters have mistakes, which another check
+/// reports.
 fn runs_of(graph: &Graph, experiment: &Experiment, scene: &Scene, device: &DeviceInfo) -> Runs {
     params_of(graph, experiment).map_or_else(
         |_| Runs::all(graph, &graph.params),

@@ -1,7 +1,7 @@
 //! Measurements of a run, in the one JSON schema of the program (`docs/stats.md`).
 
 use crate::graph::param::{OFF, Params};
-use crate::graph::run::{FrameTimes, Redo};
+use crate::graph::run::{Execution, FrameTimes};
 use crate::lab::Session;
 use crate::vulkan::DeviceInfo;
 use serde::{Deserialize, Serialize};
@@ -33,9 +33,10 @@ pub struct PassStats {
     pub gpu_ms: Spread,
     /// Frames measured.
     pub frames: usize,
-    /// In how many of them it slept, which count as 0 ms.
+    /// In how many of them it skipped, which count as 0 ms.
     #[serde(default)]
-    pub slept: usize,
+    #[serde(alias = "slept")]
+    pub skipped: usize,
 }
 
 /// The device.
@@ -88,7 +89,8 @@ pub struct Stats {
     pub warmup: usize,
     /// Whether frames did all, or what changed.
     #[serde(default)]
-    pub redo: Redo,
+    #[serde(alias = "redo")]
+    pub execution: Execution,
     /// Every pass that ran, in order.
     pub passes: Vec<PassStats>,
     /// First to last command on the GPU.
@@ -143,13 +145,13 @@ pub fn collect(
         let frames = values.len();
         let pass = &session.graph.passes[*number].value;
         let (name, stage) = (pass.name.value.clone(), pass.stage().to_string());
-        let slept = times.iter().filter(|t| t.asleep.contains(number)).count();
+        let skipped = times.iter().filter(|t| t.skipped.contains(number)).count();
         passes.push(PassStats {
             name,
             stage,
             gpu_ms: spread(values),
             frames,
-            slept,
+            skipped,
         });
     }
     let bytes: BTreeMap<String, u64> = session.program.memory(&session.graph).into_iter().collect();
@@ -165,7 +167,7 @@ pub fn collect(
         size: [width, height],
         params: param_values(&session.params),
         warmup,
-        redo: session.redo(),
+        execution: session.execution(),
         passes,
         total_gpu_ms: spread(times.iter().map(|t| t.gpu_ms).collect()),
         cpu_ms: spread(times.iter().map(|t| t.cpu_ms).collect()),
@@ -211,9 +213,9 @@ pub fn table(stats: &Stats) -> String {
         );
     };
     for pass in &stats.passes {
-        let asleep = pass.slept == pass.frames && pass.slept > 0;
+        let skipped = pass.skipped == pass.frames && pass.skipped > 0;
         row(
-            &format!("{}{}", pass.name, if asleep { " (slept)" } else { "" }),
+            &format!("{}{}", pass.name, if skipped { " (skipped)" } else { "" }),
             &pass.gpu_ms,
         );
     }

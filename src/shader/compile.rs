@@ -534,7 +534,8 @@ mod tests {
     use super::super::access::{Access, accesses};
     use super::super::reflect::without_constant_operations;
     use super::*;
-    use crate::graph::load::{Folders, load};
+    use crate::graph::load::Folders;
+    use crate::lab::load;
     use rayon::prelude::*;
     use spirq::prelude::*;
 

@@ -117,7 +117,7 @@ pub fn graph_with(params: &[(&str, &str)]) -> String {
         cache: None,
     };
     let has_all = |name: &String| {
-        let graph = conelab::graph::load::load(&home.graph_path(name), &home.folders()).unwrap();
+        let graph = conelab::lab::load(&home.graph_path(name), &home.folders()).unwrap();
         params
             .iter()
             .all(|(name, _)| graph.params.index(name).is_some())

@@ -3,7 +3,8 @@
 use super::common::model_file::{Model, bending};
 use super::common::root;
 use conelab::graph::link::generated;
-use conelab::graph::load::{Folders, load};
+use conelab::graph::load::Folders;
+use conelab::lab::load;
 use conelab::metrics::Linear;
 use conelab::scene::Scene;
 use conelab::shader::{ShaderCompiler, Source};

@@ -1,4 +1,4 @@
-//! What stands in a graph file, field by field.
+//! The fields of a graph file.
 
 mod pass;
 mod resource;

@@ -22,7 +22,7 @@ impl<'de> Deserialize<'de> for PassItem {
             passes: Option<serde::de::IgnoredAny>,
         }
         let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
-        // What is no struct at all is told as a pass that it is not.
+        // Anything but a struct is reported as a bad pass.
         let probe = crate::diagnostics::options().from_str::<Probe>(raw.get_ron());
         match probe {
             Ok(Probe { passes: Some(_) }) => {
@@ -39,9 +39,9 @@ impl<'de> Deserialize<'de> for PassItem {
 pub struct Group {
     /// What tables of times count those under that say nothing else.
     pub stage: Option<String>,
-    /// Condition of all, beside their own.
+    /// Condition of all passes of the group, in addition to their own.
     pub when: Option<Ex>,
-    /// Frames after which they rest; see [`PassDecl::settles`].
+    /// Frames until they converge; see [`PassDecl::settles`].
     pub settles: Option<Ex>,
     /// Frames after which they have converged; see [`PassDecl::converges`].
     pub converges: Option<Ex>,
@@ -92,21 +92,21 @@ pub struct PassDecl {
     /// Its own condition; see [`PassDecl::conditions`].
     #[serde(rename = "when")]
     pub own: Option<Ex>,
-    /// Conditions of the groups that it stands in.
+    /// Conditions of the enclosing groups.
     #[serde(skip)]
     pub outer: Vec<Ex>,
-    /// It gathers over frames, and rests once nothing has changed for so many but what it leaves to itself. Those of a group
-    /// rest together.
+    /// For passes that accumulate over frames: frames without a change until the pass stops. The
+    /// passes of a group stop together.
     pub settles: Option<Ex>,
-    /// Frames from a fresh start until what it gathers over frames has converged; as many as `settles` when absent. The
-    /// passes of a group count once.
+    /// Frames from a fresh start until the accumulated result has converged; the value of `settles`
+    /// when absent. A group counts once.
     pub converges: Option<Ex>,
     /// Shader files.
     #[serde(default)]
     pub shaders: Items<String>,
     /// Compute grid.
     pub dispatch: Option<Loc<Dispatch>>,
-    /// What is drawn.
+    /// The draw call.
     #[serde(default, deserialize_with = "draw")]
     pub draw: Option<Loc<Draw>>,
     /// Primitives.
@@ -116,7 +116,7 @@ pub struct PassDecl {
     pub each_mip: Option<Loc<EachMip>>,
     /// Repetition by a count.
     pub repeat: Option<Ex>,
-    /// What the shaders' names stand for, where they differ from the graph's.
+    /// Resources of names in shaders, if they differ from the graph's names.
     #[serde(default)]
     pub bind: Entries<Bind>,
     /// Colour attachments by location.
@@ -131,7 +131,8 @@ pub struct PassDecl {
     pub clear: Option<Loc<String>>,
     /// The value it is cleared to.
     pub value: Option<(f64, f64, f64, f64)>,
-    /// Textures that are read in place of those it writes while it is off, where both have the same shape: a filter's input.
+    /// Textures that are read in place of those it writes while it is off, where both have the same
+    /// shape: a filter's input.
     #[serde(default)]
     pub instead: Entries<Loc<String>>,
 }
@@ -152,7 +153,7 @@ impl PassDecl {
         self.stage.as_deref().unwrap_or(&self.name.value)
     }
 
-    /// What it says of a name of its shaders.
+    /// The binding of a name in its shaders.
     pub fn bind(&self, name: &str) -> Option<&Bind> {
         self.bind
             .0
@@ -161,7 +162,8 @@ impl PassDecl {
             .map(|(_, bind)| &bind.value)
     }
 
-    /// The member that holds the sizes of its dispatch or draw, and 32-bit words there, if a buffer holds them.
+    /// The member that holds the sizes of its dispatch or draw, and 32-bit words there, if a buffer
+    /// holds them.
     pub fn command(&self) -> Option<(&Loc<Path>, u32)> {
         match (
             self.dispatch.as_ref().map(|d| &d.value),
@@ -209,15 +211,15 @@ impl PassDecl {
 pub enum Dispatch {
     /// One thread a texel of a binding or texture.
     Cover(Loc<String>),
-    /// So many threads.
+    /// Number of threads.
     Threads(Ex, Ex, Ex),
-    /// So many groups.
+    /// Number of groups.
     Groups(Ex, Ex, Ex),
     /// Groups read from a buffer (VkDispatchIndirectCommand).
     Indirect(Loc<Path>),
 }
 
-/// What a raster pass draws.
+/// Geometry of a raster pass.
 #[derive(Clone, Debug, Deserialize)]
 pub enum Draw {
     /// The scene's triangles.
@@ -251,9 +253,9 @@ pub enum Which {
     /// All.
     #[default]
     All,
-    /// Those without alpha mask.
+    /// Draws without alpha mask.
     Opaque,
-    /// Those with.
+    /// Draws with alpha mask.
     Masked,
 }
 

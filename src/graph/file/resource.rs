@@ -10,7 +10,7 @@ use serde::Deserialize;
 pub struct TextureDecl {
     /// Two sizes for 2D, three for 3D.
     pub size: Size,
-    /// A format, or a choice parameter whose options are formats.
+    /// A format, or a choice parameter with formats as options.
     pub format: Loc<String>,
     /// Formats it may also be viewed as.
     #[serde(default)]
@@ -21,7 +21,7 @@ pub struct TextureDecl {
     pub layers: Option<Ex>,
     /// How it is sampled.
     pub sampler: Option<SamplerDecl>,
-    /// Keep last frame's content beside this frame's.
+    /// Keep last frame's content in a second copy.
     #[serde(default)]
     pub history: bool,
     /// Nothing is left in it from frame to frame; memory is shared.
@@ -44,8 +44,8 @@ impl TextureDecl {
     }
 }
 
-/// Size of a texture: two expressions for 2D, three for 3D; with the name of a texture whose they are, until the graph is
-/// whole.
+/// Size of a texture: two expressions for 2D, three for 3D. Until the graph is complete, it may be
+/// the name of a texture of the same size.
 #[derive(Clone, Debug)]
 pub struct Size(pub Vec<Ex>, pub Option<Loc<String>>);
 
@@ -122,7 +122,7 @@ pub struct AliasDecl {
     pub sampler: Option<SamplerDecl>,
 }
 
-/// What a shader's name stands for.
+/// The resource of a name in shaders.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bind {
@@ -141,7 +141,7 @@ pub struct Bind {
 }
 
 impl Bind {
-    /// With what a pass says besides.
+    /// With the additions of a pass.
     pub fn narrowed(&self, by: &Bind) -> Bind {
         Bind {
             of: self.of.clone(),
@@ -201,7 +201,8 @@ pub enum Compare {
 pub enum BufferSize {
     /// Bytes.
     Bytes(Ex),
-    /// That of the block as shaders declare it, with so many elements of the array at its end.
+    /// Size of the block as shaders declare it, with this number of elements in the array at its
+    /// end.
     Struct(Option<Ex>),
 }
 
@@ -258,7 +259,8 @@ pub struct BufferDecl {
     pub transient: bool,
 }
 
-/// A buffer and, after a point, a member of its block as shaders declare it; after further points what is in that.
+/// A buffer and, after a point, a member of its block as shaders declare it. Further points lead
+/// into structs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Path {
     /// The buffer.

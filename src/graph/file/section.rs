@@ -6,7 +6,7 @@ use crate::graph::expr::Ex;
 use crate::metrics::Kind;
 use serde::Deserialize;
 
-/// What a name stands for.
+/// The meaning of a named value.
 #[derive(Clone, Debug, Deserialize)]
 pub enum ValueDecl {
     /// A number.
@@ -32,7 +32,8 @@ pub struct PartDecl {
     pub kind: Kind,
     /// Its name within a sentence.
     pub title: Option<String>,
-    /// Whether it is what methods are looked at for: it has charts and short tables as the total has.
+    /// Whether it is what methods are looked at for: it has charts and short tables as the total
+    /// has.
     #[serde(default)]
     pub focus: bool,
 }
@@ -69,9 +70,9 @@ pub struct SceneNeeds {
 pub struct CheckDecl {
     /// The member of a buffer's block, `buffer.member`.
     pub field: Loc<Path>,
-    /// A texture: the check is made where it is wanted. Always where nothing is said.
+    /// A texture: the check runs only if it is requested. Without one it always runs.
     pub with: Option<Loc<String>>,
-    /// What it means when it is not zero, and what to do.
+    /// The cause if it is not zero, and the remedy.
     pub message: String,
 }
 
@@ -89,7 +90,7 @@ pub struct RefuseDecl {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CompareDecl {
-    /// What a button says.
+    /// Text of the button.
     pub title: String,
     /// One line.
     pub help: String,
@@ -114,7 +115,7 @@ impl CompareDecl {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ViewDecl {
-    /// What a button says.
+    /// Text of the button.
     pub title: String,
     /// One line.
     pub help: String,
@@ -122,11 +123,11 @@ pub struct ViewDecl {
     pub set: Entries<RawText>,
 }
 
-/// What a graph says to a tool; the tool of that name knows what it means.
+/// Settings for the tool of that name, which interprets them.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ToolDecl {
-    /// Textures and buffers, by what they are to the tool.
+    /// Textures and buffers by their role in the tool.
     #[serde(default)]
     pub resources: Entries<String>,
     /// Settings that it may go through.

@@ -35,7 +35,7 @@ pub struct ColumnDecl {
 }
 
 impl TableDecl {
-    /// What is wrong with it, and where, as far as that needs no shader; `at` is the table's own place.
+    /// Mistakes that need no shader, with their places; `at` is the place of the table.
     pub fn mistakes(&self, at: At) -> Vec<(At, String)> {
         let mut list = Vec::new();
         let title = &self.title;

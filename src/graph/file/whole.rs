@@ -14,19 +14,20 @@ use serde::Deserialize;
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GraphFile {
-    /// Files whose sections come before this one's.
+    /// Files read before this one.
     pub include: Items<String>,
     /// Parameters.
     pub params: Items<Decl>,
     /// Other defaults for parameters of included files.
     pub defaults: Entries<RawText>,
-    /// Parameters of included files that keep their default: nobody can set them.
+    /// Parameters of included files that keep their default and cannot be set.
     pub fixed: Items<String>,
     /// Parameters that the panel shows first: name, title in plain words.
     pub pinned: Entries<String>,
-    /// Modules that nobody chooses: name, file in the shader folder.
+    /// Modules without a choice: name, file in the shader folder.
     pub modules: Entries<String>,
-    /// Parameters that are no more, as in [`Retired`]: graphs in older captures carry their own list.
+    /// Parameters that are no more, as in [`Retired`]: graphs in older captures carry their own
+    /// list.
     pub retired: Entries<String>,
     /// Expressions by name, for other expressions and shaders.
     pub values: Entries<ValueDecl>,
@@ -44,17 +45,17 @@ pub struct GraphFile {
     pub output: Option<Loc<String>>,
     /// The linear picture.
     pub hdr: Option<Loc<String>>,
-    /// Further results that may be asked for.
+    /// Further results that may be requested.
     pub outputs: Items<String>,
     /// Contributions to the linear picture that other graphs have too.
     pub parts: Entries<PartItem>,
-    /// What the graph needs of the scene's geometry.
+    /// Requirements on the scene's geometry.
     pub scene: Option<Loc<SceneNeeds>>,
     /// Words of buffers that must be zero after a frame.
     pub checks: Items<CheckDecl>,
     /// Settings that make no sense together.
     pub refuse: Items<RefuseDecl>,
-    /// What a picture is said to be made with: a line, where `{NAME}` is the value of a parameter.
+    /// Caption of pictures, one line. `{NAME}` is the value of a parameter.
     pub caption: Option<Loc<String>>,
     /// The `Vec2` parameter that a click on the picture sets.
     pub pointer: Option<Loc<String>>,
@@ -68,7 +69,7 @@ pub struct GraphFile {
     pub fit: Entries<Items<RawText>>,
     /// Settings from the ideal to the method: what each step costs is the method's error, split.
     pub ablation: Items<ViewDecl>,
-    /// What tools are told, by their names.
+    /// Settings of tools, by their names.
     pub tools: Entries<ToolDecl>,
 }
 

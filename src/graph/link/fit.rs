@@ -1,17 +1,17 @@
-//! What a shader declares against what is there.
+//! Compares declarations of shaders with resources.
 
 use super::linked::Target;
 use crate::diagnostics::nearest;
 use crate::graph::definition::Graph;
-use crate::graph::externals::{EXTERNALS, ExternalKind};
 use crate::graph::file::{Bind, PassDecl, TextureDecl};
+use crate::graph::interface::ExternalKind;
 use crate::shader::{Resource, Shape};
 use crate::vulkan::format::{Channels, Format};
 
 /// Why a declaration does not fit, and what would.
 pub(super) type Misfit = (String, Option<String>);
 
-/// What a name of a shader is in a pass, whose `bind` or an alias may say more of it.
+/// The resource of a shader's name in a pass, after its `bind` or an alias.
 ///
 /// # Errors
 /// There is none of that name, or the shader declares something else.
@@ -24,8 +24,8 @@ pub(super) fn resolve(
 ) -> Result<Target, Misfit> {
     let resource_name = bind.map_or(name, |d| d.of.value.as_str());
     let declares = || format!("the shader declares {}", describe(resource));
-    if let Some(i) = EXTERNALS.iter().position(|e| e.name == resource_name) {
-        let (fits, expected) = match EXTERNALS[i].kind {
+    if let Some(i) = graph.interface.index(resource_name) {
+        let (fits, expected) = match graph.interface.resources[i].kind {
             ExternalKind::Uniform => (*resource == Resource::Uniform, "a uniform block"),
             ExternalKind::Storage => (
                 matches!(resource, Resource::Buffer { write: false, .. }),
@@ -77,7 +77,7 @@ pub(super) fn resolve(
         .resource_names()
         .chain(graph.aliases.iter().map(|a| a.name.as_str()));
     let known = known
-        .chain(EXTERNALS.iter().map(|e| e.name))
+        .chain(graph.interface.resources.iter().map(|e| e.name))
         .chain(pass.bind.0.iter().map(|b| b.0.value.as_str()));
     let help = nearest(name, known).unwrap_or_else(|| {
         format!("declare it in the graph, or rename it: bind: {{\"{name}\": (of: \"...\")}}")
@@ -93,7 +93,7 @@ fn read_only(name: &str) -> Misfit {
     (format!("the history of '{name}' is read-only"), None)
 }
 
-/// What a shader declares, in words.
+/// A shader's declaration in words.
 pub fn describe(resource: &Resource) -> String {
     match resource {
         Resource::Uniform => "a uniform block".into(),
@@ -127,7 +127,7 @@ pub fn bound_shape(texture: &TextureDecl) -> Shape {
     }
 }
 
-/// Why a texture does not fit what a shader declares.
+/// Why a texture does not fit a shader's declaration.
 fn misfit(
     graph: &Graph,
     name: &str,

@@ -1,5 +1,5 @@
-//! Members of buffers by name: a graph names them where it needs their bytes, and the shaders that declare them say where
-//! they lie.
+//! Members of buffers by name: a graph names them where it needs their bytes, and the shaders that
+//! declare them say where they lie.
 
 use super::linked::{Linked, Target};
 use crate::diagnostics::{Diagnostic, Loc, nearest};
@@ -11,7 +11,7 @@ use crate::shader::{Compiled, Layout};
 /// How the compiled shaders declare each buffer of a graph.
 pub struct Layouts<'l> {
     pub(in crate::graph) graph: &'l Graph,
-    /// By buffer.
+    /// Layouts by buffer.
     pub(super) declared: Vec<Vec<Declared<'l>>>,
 }
 
@@ -24,7 +24,7 @@ pub(super) struct Declared<'l> {
 }
 
 impl<'l> Layouts<'l> {
-    /// Of a graph with the shaders that are compiled.
+    /// Layouts of a graph with its compiled shaders.
     pub fn new(graph: &'l Graph, linked: &'l [Linked]) -> Layouts<'l> {
         let mut declared: Vec<Vec<Declared<'l>>> =
             graph.buffers.iter().map(|_| Vec::new()).collect();
@@ -79,7 +79,8 @@ impl<'l> Layouts<'l> {
         })
     }
 
-    /// The byte of a dispatch's or draw's sizes; nothing where no compiled shader declares the buffer.
+    /// The byte of a dispatch's or draw's sizes; nothing where no compiled shader declares the
+    /// buffer.
     ///
     /// # Errors
     /// No such member, or one that is something else.
@@ -127,7 +128,8 @@ impl<'l> Layouts<'l> {
         }
     }
 
-    /// Bytes of a buffer's block and of an element of the array at its end; nothing where no compiled shader declares it.
+    /// Bytes of a buffer's block and of an element of the array at its end; nothing where no
+    /// compiled shader declares it.
     ///
     /// # Errors
     /// The block ends in such an array and no count is given, or the reverse.

@@ -6,10 +6,10 @@ use crate::shader::{Compiled, Layout, Resource};
 use crate::vulkan::Stage;
 use std::sync::Arc;
 
-/// What a shader's name was found to be.
+/// The resource of a shader's name.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
-    /// Index in [`EXTERNALS`](crate::graph::externals::EXTERNALS).
+    /// Index in the scene's [interface](crate::graph::interface::SceneInterface).
     External(usize),
     /// Index of a buffer.
     Buffer(usize),
@@ -26,24 +26,24 @@ pub struct Bound {
     pub binding: u32,
     /// Name in the shader.
     pub name: String,
-    /// What the shader expects.
+    /// The declaration in the shader.
     pub resource: Resource,
-    /// How the block of a buffer lies in memory.
+    /// Memory layout of a buffer's block.
     pub layout: Option<Arc<Layout>>,
     /// Bytes of a uniform block that may be read; none: all of them.
     pub reads: Option<Vec<(u32, u32)>>,
-    /// What it is: one, or several of an alias, of which the first whose condition holds counts.
+    /// Its resource, or the cases of an alias. The first one with a true condition applies.
     pub cases: Vec<BoundCase>,
 }
 
-/// What a binding is, under a condition.
+/// A conditional case of a binding.
 #[derive(Clone, Debug)]
 pub struct BoundCase {
     /// The condition; none in the last case.
     pub when: Option<Ex>,
-    /// What it is.
+    /// The resource.
     pub target: Target,
-    /// What the pass or an alias says of it: where it is renamed or narrowed.
+    /// The `bind` of the pass, or the alias, that renames or narrows it.
     pub bind: Option<Bind>,
 }
 

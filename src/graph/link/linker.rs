@@ -1,4 +1,4 @@
-//! Shaders against the graph: every name a shader binds is looked up, and what it expects is compared with what is there.
+//! Shaders against the graph: looks up every name that a shader binds, and compares declarations.
 
 use super::fit::resolve;
 use super::layouts::{Declared, Layouts};
@@ -9,9 +9,7 @@ use super::runs::Runs;
 use super::unused::{Texts, unused};
 use crate::diagnostics::{At, Diagnostic, Severity};
 use crate::graph::definition::Graph;
-use crate::graph::externals::EXTERNALS;
 use crate::graph::file::PassDecl;
-use crate::graph::host;
 use crate::shader::{Binding, Compiled, Generated, ShaderCompiler, Source};
 use crate::vulkan::Stage;
 use rayon::prelude::*;
@@ -19,8 +17,8 @@ use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Compiles the shaders of a graph's passes that run, in parallel, and links them; the others stay empty. Warnings come
-/// with a good result too.
+/// Compiles the shaders of a graph's passes that run, in parallel, and links them; the others stay
+/// empty. Warnings come with a good result too.
 ///
 /// # Errors
 /// All mistakes of these shaders.
@@ -82,7 +80,8 @@ pub fn link(
     }
 }
 
-/// A mistake in the generated `params.glsl` is one in the name of a parameter or value: told where that is declared.
+/// A mistake in the generated `params.glsl` is in the name of a parameter or value, and reported at
+/// its declaration.
 fn where_declared(graph: &Graph, found: Diagnostic) -> Diagnostic {
     let line = found.source.as_deref().unwrap_or("");
     let is_name = |name: &str| has_word(line, name) || has_word(line, &name.to_uppercase());
@@ -209,7 +208,7 @@ impl<'g> Linker<'g> {
         Linked { stages, bound }
     }
 
-    /// What a shader binds, if every case of it is there and fits.
+    /// A shader's binding, if all its cases exist and fit.
     fn binding(&mut self, pass: &PassDecl, shader: &Compiled, binding: &Binding) -> Option<Bound> {
         let name = &binding.name;
         if pass.bind(name).is_none() {
@@ -244,14 +243,15 @@ impl<'g> Linker<'g> {
         })
     }
 
-    /// What shader files that are not compiled would use, as far as their texts tell; returns these.
+    /// What shader files that are not compiled would use, as far as their texts tell; returns
+    /// these.
     fn resting(
         &mut self,
         files: &[&String],
         compiler: &ShaderCompiler,
         generated: &Generated,
     ) -> Vec<Texts> {
-        // What cannot be read is told when it is compiled.
+        // Compilation reports unreadable files.
         let read = |file: &&String| Some(Arc::new(compiler.texts(file, generated).ok()?));
         let texts: Vec<Texts> = files.iter().filter_map(read).collect();
         let files: BTreeMap<&String, &String> = texts.iter().flat_map(|t| t.iter()).collect();
@@ -265,7 +265,7 @@ impl<'g> Linker<'g> {
         texts
     }
 
-    /// What a pass uses by itself, whatever its shaders say.
+    /// Resources that a pass uses without its shaders.
     fn mark_used(&mut self, pass: &PassDecl) {
         let names = pass
             .color
@@ -314,13 +314,13 @@ impl<'g> Linker<'g> {
         }
     }
 
-    /// What a shader declares of the scene's structs against what the program fills.
+    /// Compares a shader's declarations of scene structs with those of the program.
     fn host(&mut self, shader: &Compiled, binding: &Binding, cases: &[BoundCase]) {
         for case in cases {
             let (Target::External(i), Some(layout)) = (&case.target, &binding.layout) else {
                 continue;
             };
-            if let Some((message, member)) = host::mismatch(EXTERNALS[*i].name, layout) {
+            if let Some((message, member)) = self.graph.interface.resources[*i].mismatch(layout) {
                 self.find(match member {
                     Some(member) => {
                         at_member(self.shaders, shader, &binding.name, &member, message)

@@ -1,4 +1,5 @@
-//! Members of buffers where shaders put them: tables, and names that the shaders do not have or have otherwise than others.
+//! Members of buffers where shaders put them: tables, and names that the shaders do not have or
+//! have otherwise than others.
 
 use super::layouts::{Declared, Layouts};
 use crate::diagnostics::{At, Diagnostic, Loc, nearest};
@@ -108,8 +109,8 @@ pub fn table(layouts: &Layouts<'_>, number: usize) -> Option<Table> {
         .flatten()
 }
 
-/// What is wrong with the names of members, with the shaders compiled so far; with `all` of them, a buffer that none
-/// declares is a mistake too. `place` tells where a shader declares a name.
+/// Mistakes in the names of members, from the compiled shaders. With `all` shaders, an undeclared
+/// buffer is a mistake too. `place` is the place of a declaration in a shader.
 pub(super) fn mistakes(
     layouts: &Layouts<'_>,
     all: bool,

@@ -6,8 +6,8 @@ use foldhash::fast::RandomState;
 use std::collections::HashSet;
 use std::path::Path;
 
-/// An error at the line of a member, `type member;`, before the line where a shader declares its block; there, where
-/// the member has no line of its own.
+/// An error at the line of a member, `type member;`, before the line where a shader declares its
+/// block; there, where the member has no line of its own.
 pub(super) fn at_member(
     shaders: &Path,
     shader: &Compiled,
@@ -85,7 +85,7 @@ pub(super) fn at_declaration(
     )
 }
 
-/// Whether a name stands in a text, and not inside a longer one.
+/// Whether a text has a name as a whole word.
 pub fn has_word(text: &str, name: &str) -> bool {
     text.match_indices(name).any(|(i, _)| {
         let edge = |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric() && c != '_');
@@ -93,8 +93,8 @@ pub fn has_word(text: &str, name: &str) -> bool {
     })
 }
 
-/// The words of some texts, and what stands after a point with what stands before it: `params.name`. Texts are long, and
-/// asked for many names.
+/// The words of some texts, and pairs of words with a point between them, as `params.name`. An
+/// index, because texts are long and many names are looked up.
 pub(super) struct Words<'t>(HashSet<&'t str, RandomState>);
 
 impl<'t> Words<'t> {

@@ -1,4 +1,4 @@
-//! What the parameters say about shaders: which passes run, as far as their `when` says, and which files stand for modules.
+//! The effect of parameters on shaders: passes that run by their `when`, and files of modules.
 //! The shaders of other passes need not be compiled, other files not be read.
 
 use super::linked::Linked;
@@ -70,7 +70,8 @@ pub fn generated(graph: &Graph, params: &Params) -> Generated {
     files
 }
 
-/// The passes that run. One whose `when` cannot be evaluated is among them: the plan says what is wrong with it.
+/// The passes that run. A pass with an invalid `when` is included, and the plan reports the
+/// mistake.
 pub fn runs(set: &Evaluated<'_>) -> Runs {
     let holds = |when: &Ex| when.value.eval(&set.env) != Ok(0.0);
     let passes = set

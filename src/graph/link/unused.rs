@@ -1,4 +1,4 @@
-//! Warnings for what a graph declares and nobody uses.
+//! Warnings for unused declarations of a graph.
 
 use super::place::Words;
 use crate::diagnostics::{At, Diagnostic, Severity};
@@ -10,8 +10,8 @@ use std::sync::Arc;
 /// The files that a shader is made of: name, text.
 pub(super) type Texts = Arc<BTreeMap<String, String>>;
 
-/// One warning for each resource that is not among those used, and for each parameter and value that neither the graph nor
-/// the shaders' texts name.
+/// One warning for each resource that is not among those used, and for each parameter and value
+/// that neither the graph nor the shaders' texts name.
 pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -> Vec<Diagnostic> {
     let mut wanted: HashSet<&str> = graph.outputs.iter().map(String::as_str).collect();
     wanted.extend(graph.output.as_deref());

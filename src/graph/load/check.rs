@@ -1,12 +1,11 @@
-//! What can be told of a graph without its shaders: names, values, expressions, sizes and formats.
+//! Checks of a graph that need no shader: names, values, expressions, sizes and formats.
 
 use super::findings::Findings;
 use super::include::Folders;
-use super::params::{BUILTIN_VARIABLES, is_identifier};
+use super::params::is_identifier;
 use crate::diagnostics::{At, Entries, Loc, RawText, nearest};
 use crate::graph::definition::Graph;
 use crate::graph::expr::Ex;
-use crate::graph::externals::EXTERNALS;
 use crate::graph::file::{CheckDecl, CompareDecl, Path, TableDecl, ToolDecl};
 use crate::graph::param::Kind;
 use crate::vulkan::Format;
@@ -23,7 +22,7 @@ pub(super) struct Check<'g> {
 impl<'g> Check<'g> {
     pub(super) fn new(graph: &'g Graph, folders: &'g Folders, found: Findings) -> Check<'g> {
         let mut variables: HashSet<String> =
-            BUILTIN_VARIABLES.iter().map(|v| (*v).to_string()).collect();
+            graph.interface.all_variables().map(String::from).collect();
         variables.extend(graph.params.list.iter().flat_map(|p| p.variables()));
         variables.extend(graph.params.option_names().map(String::from));
         // Signatures are known only to shaders: which settings count follows from what these read.
@@ -49,7 +48,8 @@ impl<'g> Check<'g> {
             .for_each(|(name, text)| self.setting(name, text));
     }
 
-    /// A side of a comparison: parameters of this graph. Another graph may be missing, as in captures.
+    /// A side of a comparison: parameters of this graph. Another graph may be missing, as in
+    /// captures.
     pub(super) fn side(&mut self, list: &Entries<RawText>) {
         if CompareDecl::graph(list).is_none() {
             self.settings(list);
@@ -90,7 +90,7 @@ impl<'g> Check<'g> {
                     ),
                 );
             }
-            if EXTERNALS.iter().any(|e| e.name == *name) {
+            if graph.interface.index(name).is_some() {
                 self.error(
                     at,
                     format!("'{name}' is a resource that every scene offers; choose another name"),
@@ -129,7 +129,7 @@ impl<'g> Check<'g> {
                 self.error(name.at, message);
             }
         }
-        // Of a choice, each option's file is looked for when it is set: a capture holds no other.
+        // The file of a choice's option is looked up when it is set: captures hold no other.
         for (_, file) in &fixed.0 {
             if crate::shader::find(&self.folders.shaders, &file.value).is_none() {
                 let folder = std::path::Path::new(&file.value)

@@ -1,4 +1,4 @@
-//! What can be told of a pass without its shaders.
+//! Checks of a pass that need no shader.
 
 use super::check::{Check, files_of};
 use crate::diagnostics::{At, Loc, nearest};
@@ -77,8 +77,8 @@ impl Check<'_> {
         }
     }
 
-    /// Whether a texture's format is one of depth; nothing where it is none, which was told where it stands. A choice of
-    /// formats is of its first one's kind.
+    /// Whether a texture's format is a depth format; nothing if it is no format, which another
+    /// check reports. A choice of formats counts as its first one.
     fn is_depth(&self, texture: &str) -> Option<bool> {
         let name = &self.graph.textures[self.graph.texture(texture)?]
             .1

@@ -1,16 +1,16 @@
-//! Choices in expressions: a choice is compared with its own options and stands for nothing else. Rhai sees numbers, so a
-//! comparison that never holds would leave a pass out without a word.
+//! Choices in expressions: a choice is compared with its own options and stands for nothing else.
+//! Rhai sees numbers, so a comparison that never holds would leave a pass out without a word.
 
 use crate::diagnostics::nearest;
 use crate::graph::expr::Expr;
 use crate::graph::param::{Kind, Params};
 use rhai::Stmt;
 
-/// What a part of an expression stands for.
+/// The type of a part of an expression.
 enum Type<'a> {
-    /// A number or a truth value, which Rhai tells apart.
+    /// A number or a boolean, which Rhai distinguishes.
     Plain,
-    /// A name that stands for nothing known: told elsewhere.
+    /// An unknown name, which another check reports.
     Unknown,
     /// A choice parameter.
     Choice(&'a str, &'a [String]),
@@ -97,7 +97,7 @@ impl<'a> Walk<'a> {
                 }
             }
             ("hash", [a, b]) => {
-                // What a choice is does not matter there, only whether it has changed.
+                // A signature only depends on whether a choice has changed.
                 for part in [a, b] {
                     self.type_of(part);
                 }

@@ -1,8 +1,8 @@
-//! Mistakes in the files of a graph, and what they may have hidden.
+//! Mistakes in the files of a graph, and names that they may have hidden.
 
 use crate::diagnostics::{At, Diagnostic, Sources};
 
-/// What was found so far.
+/// Findings so far.
 #[derive(Default)]
 pub(super) struct Findings {
     pub sources: Sources,
@@ -22,7 +22,7 @@ impl Findings {
         self.errors.push(self.sources.error(at, message).help(help));
     }
 
-    /// Whether a name that is not known is a mistake of its own, and not what is left of one that was reported.
+    /// Whether an unknown name is a mistake of its own, and not a consequence of a reported one.
     pub fn is_unknown(&self, name: &str) -> bool {
         !self.partial && !self.broken.iter().any(|b| b == name)
     }

@@ -23,9 +23,9 @@ const MAX_DEPTH: usize = 32;
 pub(super) struct Include<'f> {
     pub folders: &'f Folders,
     pub found: Findings,
-    /// Those read, each behind those that it includes.
+    /// Files that were read, each after its includes.
     pub files: Vec<GraphFile>,
-    /// Those being read, each included by the one before.
+    /// Files being read, each included by the one before.
     stack: Vec<PathBuf>,
     /// What to write instead of a graph's name that is no more.
     retired: Vec<(String, String)>,

@@ -9,7 +9,8 @@ use crate::graph::file::{
 
 /// Adds a file's sections to those of the files before it.
 pub(super) fn add(all: &mut GraphFile, file: GraphFile) {
-    // A parameter takes the place of an included file's value, and of the module that it has set once and for all.
+    // A parameter takes the place of an included file's value, and of the module that it has set
+    // once and for all.
     let is_param = |name: &Loc<String>| {
         file.params
             .0
@@ -94,7 +95,7 @@ pub(super) fn insert_pass(
         Some(i) => passes.insert(i + 1, pass),
         None if found.is_unknown(&after.value) => {
             let known = passes.iter().map(|p| p.value.name.value.as_str());
-            let message = format!("no pass '{}' stands before this one", after.value);
+            let message = format!("no earlier pass is named '{}'", after.value);
             found.unknown(after.at, &after.value, message, known);
         }
         None => passes.push(pass),
@@ -136,7 +137,7 @@ pub(super) fn sizes_of_others(textures: &mut [(String, Loc<TextureDecl>)], found
     }
 }
 
-/// Adds the aliases and samplers of a file to those of the files before it, whose names they replace.
+/// Adds the aliases and samplers of a file. They replace earlier ones of the same names.
 pub(super) fn add_aliases(
     known: &mut Vec<Alias>,
     aliases: Entries<Vec<Loc<AliasDecl>>>,

@@ -10,21 +10,25 @@ mod params;
 mod values;
 
 pub use include::Folders;
-pub use params::BUILTIN_VARIABLES;
 
 use super::definition::{Graph, LightPart};
 use super::file::{GraphFile, PartItem, ungrouped};
+use super::interface::SceneInterface;
 use super::param::Params;
 use crate::diagnostics::{Diagnostic, Entries, Items, Loc, RawText, Severity, Sources};
 use check::Check;
 use findings::Findings;
 use std::path::Path;
 
-/// Reads `path` and what it includes.
+/// Reads `path` and its includes, for scenes with this interface.
 ///
 /// # Errors
 /// All mistakes of all files.
-pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
+pub fn load(
+    path: &Path,
+    folders: &Folders,
+    interface: &'static SceneInterface,
+) -> Result<Graph, Vec<Diagnostic>> {
     let mut include = include::Include::new(folders);
     let retired = include.retired();
     include.file(path, None);
@@ -57,7 +61,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     join::leave_out_fixed(&mut file);
     let mut textures = by_name(file.textures);
     join::sizes_of_others(&mut textures, &mut found);
-    let mut list = params::declared(&file.params.0, &mut found);
+    let mut list = params::declared(&file.params.0, interface, &mut found);
     params::set_defaults(&mut list, &file.defaults, &mut found);
     params::fix(&mut list, &file.fixed, &mut found);
     let pass_names = passes.iter().map(|p| p.value.name.value.clone()).collect();
@@ -71,7 +75,8 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         name: path
             .file_stem()
             .map_or(String::new(), |s| s.to_string_lossy().into_owned()),
-        values: values::ordered(file.values.0, &params, &mut found),
+        interface,
+        values: values::ordered(file.values.0, &params, interface, &mut found),
         params,
         pinned: texts(&file.pinned),
         modules: texts(&file.modules),
@@ -165,8 +170,8 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
 }
 
 impl Graph {
-    /// Whether [`load`] would read the same again: its files, and those of the modules that it names, are there as they
-    /// were.
+    /// Whether [`load`] would read the same again: its files, and those of the modules that it
+    /// names, are there as they were.
     pub fn is_current(&self, folders: &Folders) -> bool {
         let is_there = |file: &String| crate::shader::find(&folders.shaders, file).is_some();
         self.modules.iter().all(|(_, file)| is_there(file)) && self.sources.are_current()
@@ -184,7 +189,7 @@ fn raw(list: &Items<RawText>) -> Vec<String> {
     list.0.iter().map(|text| text.value.0.clone()).collect()
 }
 
-/// By name, each with its name's place.
+/// Items by name, each with the place of its name.
 fn by_name<T>(list: Entries<T>) -> Vec<(String, Loc<T>)> {
     list.0
         .into_iter()

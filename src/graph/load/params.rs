@@ -2,30 +2,8 @@
 
 use super::findings::Findings;
 use crate::diagnostics::{Entries, Items, Loc, RawText};
+use crate::graph::interface::SceneInterface;
 use crate::graph::param::{Decl, OFF, Param};
-
-/// Variables that every expression may use beside parameters.
-pub const BUILTIN_VARIABLES: &[&str] = &[
-    "width",
-    "height",
-    "mip",
-    "index",
-    "shadow_views",
-    "directional_views",
-    "light_count",
-    "triangle_count",
-    "emitting_triangle_count",
-    "scene_size",
-    "seen_distance",
-    "int64_atomics",
-    "software_device",
-    "scene_min_x",
-    "scene_min_y",
-    "scene_min_z",
-    "scene_max_x",
-    "scene_max_y",
-    "scene_max_z",
-];
 
 /// Names that GLSL and expressions can use.
 pub(super) fn is_identifier(name: &str) -> bool {
@@ -36,8 +14,12 @@ pub(super) fn is_identifier(name: &str) -> bool {
 
 const IDENTIFIER: &str = "letters, digits and underscores, starting with a lower-case letter";
 
-/// Those that are declared as they should be. Names of the others go to those that are broken.
-pub(super) fn declared(decls: &[Loc<Decl>], found: &mut Findings) -> Vec<Param> {
+/// Parameters without mistakes. Names of the others are recorded as broken.
+pub(super) fn declared(
+    decls: &[Loc<Decl>],
+    interface: &SceneInterface,
+    found: &mut Findings,
+) -> Vec<Param> {
     let mut list: Vec<Param> = Vec::new();
     for Loc { value: decl, at } in decls {
         let Loc {
@@ -54,7 +36,7 @@ pub(super) fn declared(decls: &[Loc<Decl>], found: &mut Findings) -> Vec<Param> 
                 *named_at,
                 format!("'{OFF}' is what passes are left out by: no parameter has that name"),
             );
-        } else if BUILTIN_VARIABLES.contains(&name.as_str()) {
+        } else if interface.has_variable(name) {
             found.error(
                 *named_at,
                 format!("'{name}' is a variable that every graph has"),
@@ -82,9 +64,7 @@ pub(super) fn declared(decls: &[Loc<Decl>], found: &mut Findings) -> Vec<Param> 
                     format!("'{option}' cannot be an option's name"),
                     Some(IDENTIFIER.into()),
                 );
-            } else if list.iter().any(|p| p.name == *option)
-                || BUILTIN_VARIABLES.contains(&option.as_str())
-            {
+            } else if list.iter().any(|p| p.name == *option) || interface.has_variable(option) {
                 let has = "has the name of a parameter or variable, which expressions could not tell apart";
                 found.error(*at, format!("option '{option}' {has}"));
             }

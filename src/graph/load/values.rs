@@ -1,17 +1,20 @@
 //! Named values of a graph's files, in an order in which they can be evaluated.
 
 use super::findings::Findings;
-use super::params::{BUILTIN_VARIABLES, is_identifier};
+use super::params::is_identifier;
 use crate::diagnostics::Loc;
 use crate::graph::definition::Named;
 use crate::graph::expr::Expr;
 use crate::graph::file::ValueDecl;
+use crate::graph::interface::SceneInterface;
 use crate::graph::param::Params;
 
-/// The declared values, each after those that it reads. Names of those that are left out for a mistake go to `broken`.
+/// The declared values, each after those that it reads. Names of those that are left out for a
+/// mistake go to `broken`.
 pub(super) fn ordered(
     decls: Vec<(Loc<String>, Loc<ValueDecl>)>,
     params: &Params,
+    interface: &SceneInterface,
     found: &mut Findings,
 ) -> Vec<Named> {
     let mut open: Vec<Named> = Vec::new();
@@ -35,7 +38,7 @@ pub(super) fn ordered(
             expr,
             signs,
         };
-        if let Some(message) = name_mistake(&named.name, params, &open) {
+        if let Some(message) = name_mistake(&named.name, params, interface, &open) {
             found.error(named.at, message);
             found.broken.push(named.name);
         } else {
@@ -70,7 +73,12 @@ pub(super) fn ordered(
     done
 }
 
-fn name_mistake(name: &str, params: &Params, others: &[Named]) -> Option<String> {
+fn name_mistake(
+    name: &str,
+    params: &Params,
+    interface: &SceneInterface,
+    others: &[Named],
+) -> Option<String> {
     if !is_identifier(name) {
         return Some(format!(
             "'{name}' cannot be a value's name: letters, digits and underscores, starting with a lower-case letter"
@@ -88,7 +96,7 @@ fn name_mistake(name: &str, params: &Params, others: &[Named]) -> Option<String>
             "value '{name}' has the name of an option, which expressions could not tell apart"
         ));
     }
-    if BUILTIN_VARIABLES.contains(&name) {
+    if interface.has_variable(name) {
         return Some(format!("'{name}' is a variable that every graph has"));
     }
     others

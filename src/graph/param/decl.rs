@@ -1,4 +1,4 @@
-//! Declarations of parameters as they stand in a graph file.
+//! Declarations of parameters in a graph file.
 
 use super::kinds::{Kind, Param, Value};
 use crate::diagnostics::{Entries, Loc};
@@ -13,7 +13,7 @@ pub struct Decl {
     pub name: Loc<String>,
     /// The options of a choice or a module, with their places.
     pub options: Vec<Loc<String>>,
-    /// The parameter, or what is wrong with it.
+    /// The parameter, or its mistake.
     pub param: Result<Param, String>,
 }
 
@@ -40,8 +40,8 @@ enum Kinds {
     Module(ModuleFields),
 }
 
-/// Fields of a module: a choice whose options are shader files. `#include "modules/NAME.glsl"` is the file of the option
-/// that is set.
+/// Fields of a module, a choice of shader files. `#include "modules/NAME.glsl"` is the file of the
+/// option that is set.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ModuleFields {

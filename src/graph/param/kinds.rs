@@ -1,4 +1,4 @@
-//! What a parameter may hold, how that is written, and what it is called.
+//! Kinds, values and declarations of parameters.
 
 use crate::diagnostics::{At, nearest, options};
 use crate::graph::expr::{Env, Ex, Var};
@@ -112,13 +112,13 @@ pub struct Param {
     pub name: String,
     /// Where it is declared.
     pub at: At,
-    /// What it holds.
+    /// The kind of its value.
     pub kind: Kind,
-    /// Value when nothing else is said.
+    /// Default value.
     pub default: Value,
     /// Default where the parameter is declared; a graph that includes it may have another.
     pub declared: Value,
-    /// Value of a plain or cheaper method, to tell what the parameter is worth.
+    /// Value of a plain or cheaper method, for ablations.
     pub plain: Option<Value>,
     /// Least and greatest value, of each component of a vector.
     pub range: Option<(f64, f64)>,
@@ -138,19 +138,21 @@ pub struct Param {
     pub effective: Option<Ex>,
     /// Lines of help for the options of a choice; empty for other kinds.
     pub option_help: Vec<String>,
-    /// Of a module: the shader file of each option; empty for all others.
+    /// The shader files of a module's options; empty for other kinds.
     pub files: Vec<String>,
     /// Whether the graph keeps it at its default.
     pub fixed: bool,
 }
 
 impl Param {
-    /// Whether its options are shader files: then it stands in no shader itself.
+    /// Whether its options are shader files. Shaders then include the file and do not name the
+    /// parameter.
     pub fn is_module(&self) -> bool {
         !self.files.is_empty()
     }
 
-    /// Whether another value needs other shaders or pipelines, and is not just a number that shaders read.
+    /// Whether another value needs other shaders or pipelines, and is not just a number that
+    /// shaders read.
     pub fn is_compiled(&self) -> bool {
         self.constant || self.is_module()
     }
@@ -167,7 +169,7 @@ impl Param {
         }
     }
 
-    /// How shaders name it, where it stands in them itself: a constant, or a member of the uniform block.
+    /// Its name in shaders: a constant, or a member of the uniform block.
     pub fn in_shaders(&self) -> String {
         if self.constant {
             self.name.to_uppercase()
@@ -176,7 +178,8 @@ impl Param {
         }
     }
 
-    /// Gives its variables a value. The numbers of a choice's options are among the variables already.
+    /// Gives its variables a value. The numbers of a choice's options are among the variables
+    /// already.
     pub(in crate::graph) fn put(&self, value: &Value, env: &mut Env) {
         let var = match value {
             Value::Bool(v) => Var::Bool(*v),
@@ -197,7 +200,7 @@ impl Param {
         env.insert(self.name.clone(), var);
     }
 
-    /// Whether a value is of the right kind and in range; the error names the parameter and what was expected.
+    /// Checks kind and range of a value. The error names the parameter and the expected values.
     ///
     /// # Errors
     /// The text for the user.

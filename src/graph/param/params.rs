@@ -34,7 +34,7 @@ impl Params {
         }
     }
 
-    /// Those that may be set.
+    /// Parameters that may be set.
     pub fn offered(&self) -> impl Iterator<Item = &Param> {
         self.list.iter().filter(|p| !p.fixed)
     }
@@ -130,7 +130,8 @@ impl Params {
             .collect())
     }
 
-    /// All that is set, by name and as RON: the parameters, and the passes left out where there are some.
+    /// All that is set, by name and as RON: the parameters, and the passes left out where there are
+    /// some.
     pub fn texts(&self) -> impl Iterator<Item = (String, String)> {
         let off = (!self.off.is_empty()).then(|| (OFF.to_string(), format!("{:?}", self.off)));
         self.pairs()
@@ -138,7 +139,8 @@ impl Params {
             .chain(off)
     }
 
-    /// Adds the values as expression variables; options of choices become numbers that compare equal by name.
+    /// Adds the values as expression variables; options of choices become numbers that compare
+    /// equal by name.
     pub fn fill(&self, env: &mut Env) {
         let mut options: Vec<&str> = self.option_names().collect();
         options.sort_unstable();
@@ -160,8 +162,8 @@ impl Params {
             .map(String::as_str)
     }
 
-    /// The generated include `params.glsl`: a uniform block that ends with these members, specialisation constants, names
-    /// of options.
+    /// The generated include `params.glsl`: a uniform block that ends with these members,
+    /// specialisation constants, names of options.
     pub fn glsl(&self, values: &str) -> String {
         let (mut members, mut rest) = (String::new(), String::new());
         for (id, param) in self.list.iter().enumerate().filter(|(_, p)| !p.is_module()) {
@@ -202,7 +204,8 @@ impl Params {
         )
     }
 
-    /// The content of the uniform block (std140, OpenGL 4.6 section 7.6.2.2), with these numbers at its end.
+    /// The content of the uniform block (std140, OpenGL 4.6 section 7.6.2.2), with these numbers at
+    /// its end.
     pub fn uniform_bytes(&self, values: &[Value]) -> Vec<u8> {
         let mut bytes = Vec::new();
         for (param, value) in self.pairs().filter(|(p, _)| !p.is_compiled()) {

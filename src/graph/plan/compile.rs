@@ -1,4 +1,4 @@
-//! A frame's plan, from sizes over steps to what is left of them.
+//! A frame's plan: sizes, then steps, then the removal of unused ones.
 
 use super::data::{BufferPlan, Convergence, Plan, Step, TexturePlan};
 use super::numbers::Numbers;
@@ -83,7 +83,7 @@ pub fn plan(
         }
     }
     let mut numbers = planner.numbers;
-    // The last first: of two filters that are off, who reads the second reads what the first would have read.
+    // Backwards: with two filters off, a reader of the second reads the input of the first.
     for (of, read) in instead.into_iter().rev() {
         read_instead(&textures, &mut steps, of, read);
     }
@@ -133,7 +133,7 @@ pub fn plan(
     }
 }
 
-/// What passes that are off would have begun anew holds zeros in their place, and the picture has to come from somewhere.
+/// Resources that only passes which are off write hold zeros. The picture itself needs a writer.
 fn nobody_writes(
     set: &Evaluated<'_>,
     wanted: &[String],
@@ -170,7 +170,7 @@ fn read_instead(textures: &[TexturePlan], steps: &mut [Step], of: usize, read: u
     let (of, by) = (Res::Texture(of, false), read);
     for step in steps {
         let plain = |u: &Use| !u.write && matches!(u.kind, UseKind::Sampled | UseKind::Storage);
-        // Who adds to it goes on with what there is.
+        // Passes that add to it keep its content.
         if step.uses.iter().any(|u| u.res == of && !plain(u)) {
             continue;
         }
@@ -188,8 +188,8 @@ fn read_instead(textures: &[TexturePlan], steps: &mut [Step], of: usize, read: u
     }
 }
 
-/// In what has a history nothing is left of two frames ago, in what is transient nothing at all, by their declarations: who
-/// stores first replaces everything.
+/// The first store to a resource with a history, or to a transient one, replaces everything: by
+/// their declarations, no older content is left.
 fn written_anew(textures: &[TexturePlan], buffers: &[BufferPlan], steps: &mut [Step]) {
     let begun = (0..buffers.len()).filter(|b| buffers[*b].history || buffers[*b].transient);
     let buffers = begun.map(|b| (Res::Buffer(b, false), 0));

@@ -1,5 +1,6 @@
-//! The number of frames in which a picture converges. Groups of passes that accumulate over frames declare their count
-//! (`settles`, `converges`); a group starts from the result of the group before it, so the counts are summed.
+//! The number of frames in which a picture converges. Groups of passes that accumulate over frames
+//! declare their count (`settles`, `converges`); a group starts from the result of the group before
+//! it, so the counts are summed.
 
 use super::data::{Convergence, Plan};
 use crate::diagnostics::At;
@@ -9,7 +10,8 @@ use std::collections::BTreeMap;
 /// Frames for a texture with a history if the pass that reads it declares nothing.
 const UNDECLARED: u32 = 32;
 
-/// Frames that passes declare, by pass number: the place of the expression, which a group shares, and its value.
+/// Frames that passes declare, by pass number: the place of the expression, which a group shares,
+/// and its value.
 pub(super) type Declared = BTreeMap<usize, (At, u32)>;
 
 /// The frames until the steps of a plan have converged.

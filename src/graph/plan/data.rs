@@ -1,4 +1,4 @@
-//! What runs in a frame, as data.
+//! The work of a frame as data.
 
 use super::uses::Use;
 use crate::graph::definition::Res;
@@ -126,16 +126,16 @@ pub struct Step {
     pub pass: usize,
     /// Repeat index or mip.
     pub index: u32,
-    /// What it does.
+    /// The command.
     pub work: Work,
     /// Which case of each of the pass's bindings holds.
     pub cases: Vec<usize>,
     /// Textures behind its bindings.
     pub bindings: Vec<BindingPlan>,
-    /// Bindings, by index in the pass's bindings, whose stores nobody needs: they are taken out of the shader. Those that
-    /// are not among `bindings` either are not bound at all.
+    /// Indices of bindings of the pass with unused stores, which are removed from the shader. A
+    /// binding that is missing in `bindings` too is not bound at all.
     pub stripped: Vec<usize>,
-    /// Colour attachments; those nobody needs are `None`.
+    /// Colour attachments; `None` if unused.
     pub color: Vec<Option<AttachmentPlan>>,
     /// Depth attachment.
     pub depth: Option<AttachmentPlan>,
@@ -156,7 +156,7 @@ pub struct Plan {
     pub buffers: Vec<BufferPlan>,
     /// Steps in order.
     pub steps: Vec<Step>,
-    /// Those that gather over frames.
+    /// Groups of steps that accumulate over frames.
     pub settling: Vec<Settling>,
     /// Frames until the picture has converged.
     pub convergence: Convergence,
@@ -170,12 +170,13 @@ pub struct Plan {
     pub max_edge: Option<f64>,
 }
 
-/// Frames until everything that passes gather over frames has converged, one group of passes after the other.
+/// Frames until everything that passes gather over frames has converged, one group of passes after
+/// the other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Convergence {
     /// From a fresh start; 1 if no pass gathers over frames.
     pub fresh: u32,
-    /// After a change while frames go on, at most: passes replace what they gathered before it.
+    /// After a change between frames, at most: passes replace their earlier result.
     pub changed: u32,
 }
 
@@ -186,9 +187,9 @@ pub struct Settling {
     pub frames: u32,
     /// They, in order.
     pub steps: Vec<usize>,
-    /// Steps through which what they leave comes back to them, over frames too, and they themselves.
+    /// These steps, and those through which their output returns to them, over frames too.
     pub ring: Vec<usize>,
-    /// What they write of textures and buffers with a history.
+    /// Textures and buffers with a history that they write.
     pub kept: Vec<Res>,
 }
 
@@ -197,7 +198,7 @@ pub struct Settling {
 pub struct Transient {
     /// It.
     pub res: Res,
-    /// From each step that begins it anew to the last that uses what is in it then.
+    /// From each step that begins new content to the last step that uses this content.
     pub spans: Vec<(usize, usize)>,
 }
 
@@ -210,7 +211,8 @@ impl Plan {
         }
     }
 
-    /// Which copy a resource is: with a history, odd frames write the second one and read the first.
+    /// Which copy a resource is: with a history, odd frames write the second one and read the
+    /// first.
     pub fn copy_of(&self, res: Res, odd: bool) -> usize {
         let (Res::Texture(_, last) | Res::Buffer(_, last)) = res;
         usize::from(self.has_history(res) && last != odd)

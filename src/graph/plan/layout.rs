@@ -8,8 +8,8 @@ use crate::vulkan::vk::{self, ImageLayout as Layout};
 
 /// Gives every use its layout and every texture its usage flags.
 ///
-/// A texture that is a storage image anywhere stays in GENERAL for storage and sampling: changing layouts of 3D images
-/// between dispatches buys nothing on the devices known to us.
+/// A texture that is a storage image anywhere stays in GENERAL for storage and sampling: changing
+/// layouts of 3D images between dispatches buys nothing on the devices known to us.
 pub fn layouts(graph: &Graph, plan: &mut Plan, errors: &mut Vec<Diagnostic>) {
     let mut stored = vec![false; plan.textures.len()];
     for u in plan

@@ -1,4 +1,4 @@
-//! Leaves out what nobody needs: passes, attachments, stores to images, textures.
+//! Removes unused passes, attachments, stores to images, and textures.
 
 use super::data::{BindingPlan, Plan, Step, Work};
 use super::uses::{Part, Use, UseKind, parts};
@@ -8,9 +8,10 @@ use crate::shader::Resource;
 use crate::vulkan::vk::AccessFlags2;
 use std::collections::BTreeSet;
 
-/// Keeps the steps that the wanted resources depend on, over frames too, and tells why the others were left out.
+/// Keeps the steps that the wanted resources depend on, over frames too, and records why the others
+/// are left out.
 ///
-/// Stores of shaders count as partial, so what they write stays needed before them; clears replace everything.
+/// Stores of shaders count as partial, so earlier content stays needed. Clears replace everything.
 pub(super) fn prune(graph: &Graph, linked: &[Linked], plan: &mut Plan, wanted: &[String]) {
     let mut at_end: BTreeSet<Part> = BTreeSet::new();
     for name in wanted {
@@ -24,7 +25,8 @@ pub(super) fn prune(graph: &Graph, linked: &[Linked], plan: &mut Plan, wanted: &
         };
         at_end.extend((0..mips).map(|mip| (res, mip)));
     }
-    // What a frame reads before writing it must be right at the end of the frame before: repeat until nothing is added.
+    // A read before the first write needs the content at the end of the last frame: repeat until
+    // nothing is added.
     let kept = loop {
         let (kept, at_start, history) = backward(&plan.steps, &at_end);
         let before = at_end.len();
@@ -62,13 +64,13 @@ pub(super) fn prune(graph: &Graph, linked: &[Linked], plan: &mut Plan, wanted: &
     for pass in unneeded {
         if !plan.steps.iter().any(|s| s.pass == pass) {
             plan.dropped
-                .push((pass, String::from("nobody needs what it writes")));
+                .push((pass, String::from("its output is unused")));
         }
     }
     plan.dropped.sort_unstable();
 }
 
-/// Leaves the stores to an image out of a step. Of an image that the shader asks for its size, the binding stays.
+/// Removes the stores to an image from a step. The binding stays if the shader queries the size.
 fn leave_out(link: &Linked, step: &mut Step, image: &Use) {
     let mut sized = false;
     let stored = |b: &BindingPlan| {
@@ -99,17 +101,17 @@ fn leave_out(link: &Linked, step: &mut Step, image: &Use) {
     }
 }
 
-/// What is needed of a step that stays.
+/// Needed outputs of a step.
 #[derive(Clone)]
 struct Needed {
     /// Whether each colour attachment is.
     color: Vec<bool>,
-    /// Images that a compute shader writes for nobody.
+    /// Images that a compute shader writes without use.
     unneeded_images: Vec<Use>,
 }
 
-/// For each step from the last: `None` when it can go, else what is needed of it; and what must be there at the start,
-/// and as history.
+/// Needed outputs of each step, from the last one on; `None` if it can go. Also the content needed
+/// at the start, and as history.
 fn backward(
     steps: &[Step],
     at_end: &BTreeSet<Part>,

@@ -1,4 +1,4 @@
-//! From a graph and its shaders to what runs in a frame.
+//! Plans a frame from a graph and its shaders.
 
 mod compile;
 mod converge;

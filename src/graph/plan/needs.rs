@@ -1,4 +1,4 @@
-//! Features that passes need and devices may lack, told with what to choose instead.
+//! Features that passes need and devices may lack, reported with alternatives.
 
 use super::data::Plan;
 use crate::diagnostics::Diagnostic;

@@ -62,7 +62,7 @@ impl<'a> Numbers<'a> {
         rounded as u32
     }
 
-    /// The first case whose condition holds; the last one has none.
+    /// The first case with a true condition; the last one has no condition.
     pub fn case<'e>(&mut self, conditions: impl ExactSizeIterator<Item = Option<&'e Ex>>) -> usize {
         let last = conditions.len().saturating_sub(1);
         conditions

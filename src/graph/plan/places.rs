@@ -6,7 +6,7 @@ use std::ops::Range;
 
 /// The places of a plan.
 pub struct Places {
-    /// Where those of the two copies of each texture begin. Those of buffers follow.
+    /// First numbers of the two copies of each texture. Buffers follow.
     textures: Vec<[usize; 2]>,
     buffers: usize,
     /// How many there are.
@@ -14,7 +14,7 @@ pub struct Places {
 }
 
 impl Places {
-    /// Those of all textures and buffers, used or not.
+    /// Places of all textures and buffers, used or not.
     pub fn new(plan: &Plan) -> Places {
         let mut count = 0;
         let mut next = |places: usize| {
@@ -34,7 +34,7 @@ impl Places {
         }
     }
 
-    /// Of mips of a copy; a buffer has one.
+    /// The places of mips of a copy; a buffer has one mip.
     pub fn of_copy(&self, res: Res, mips: (u32, u32), copy: usize) -> Range<usize> {
         let first = match res {
             Res::Texture(t, _) => self.textures[t][copy],
@@ -43,7 +43,7 @@ impl Places {
         first + mips.0 as usize..first + (mips.0 + mips.1) as usize
     }
 
-    /// Of mips of a resource in even or in odd frames.
+    /// The places of mips of a resource in even or odd frames.
     pub fn of(&self, plan: &Plan, res: Res, mips: (u32, u32), odd: bool) -> Range<usize> {
         self.of_copy(res, mips, plan.copy_of(res, odd))
     }

@@ -31,7 +31,7 @@ struct State {
     write: (Stages, Access),
     /// Stages that read since.
     reads: Stages,
-    /// Who has already waited for the last write.
+    /// Stages that have already waited for the last write.
     seen: Vec<(Stages, Access)>,
 }
 
@@ -39,7 +39,8 @@ struct State {
 pub struct Schedule {
     /// `[parity][step]`: even and odd frames differ where something has a history.
     pub barriers: [Vec<Vec<Barrier>>; 2],
-    /// `[parity][place]`: after even and odd frames. Those after an odd frame must hold before the first. Buffers have none.
+    /// `[parity][place]`: layouts after even and odd frames. The layouts after an odd frame are
+    /// needed before the first. Buffers have none.
     pub ends: [Vec<Layout>; 2],
     /// The places.
     pub places: Places,
@@ -52,7 +53,7 @@ pub fn schedule(plan: &Plan) -> Schedule {
     let shared = of_shared_memory(plan);
     let mut barriers = [Vec::new(), Vec::new()];
     let mut ends = [Vec::new(), Vec::new()];
-    // Two rounds settle the states at the frame's border, two more record.
+    // Two rounds find the states at the frame's border, two more record.
     for frame in 0..4 {
         let parity = frame % 2;
         let before = |step| before(plan, &places, step, parity == 1, &shared, &mut states);
@@ -66,7 +67,8 @@ pub fn schedule(plan: &Plan) -> Schedule {
     }
 }
 
-/// Who may have used memory before a transient resource begins in it: whoever uses transients at all.
+/// Stages that may have used the memory before a transient resource begins in it: all that use
+/// transient resources.
 fn of_shared_memory(plan: &Plan) -> State {
     let is_shared = |u: &&Use| plan.transients.iter().any(|t| t.res == u.res);
     let mut all = State::default();
@@ -86,7 +88,8 @@ fn before(
     states: &mut [State],
 ) -> Vec<Barrier> {
     let mut list: Vec<Barrier> = Vec::new();
-    // Reads first: a step that takes its size from a buffer that it writes has not waited for that write.
+    // Reads first: a step that takes its size from a buffer that it writes has not waited for that
+    // write.
     let (writes, reads): (Vec<&Use>, Vec<&Use>) = step.uses.iter().partition(|u| u.write);
     for u in reads.into_iter().chain(writes) {
         let anew = begins(u) && plan.transients.iter().any(|t| t.res == u.res);
@@ -149,7 +152,7 @@ fn advance(state: &mut State, u: &Use) -> Option<((Stages, Access), Layout)> {
             .iter()
             .any(|s| s.0.contains(u.stages) && s.1.contains(u.access));
         state.reads |= u.stages;
-        // One that is only asked for its size waits for nobody.
+        // A size query needs no barrier.
         let waits = u.read && state.write.0 != Stages::empty() && !seen;
         if waits {
             state.seen.push((u.stages, u.access));

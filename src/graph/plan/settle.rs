@@ -1,5 +1,6 @@
-//! Passes that gather over frames: those that a `settles` names rest together once nothing has changed for so many frames but
-//! what they leave to themselves, and keep what they have. Which changes count follows from what they read.
+//! Passes that accumulate over frames. The passes of a `settles` stop together after its number of
+//! frames without a change, and keep their result. Their inputs, except their own output, decide
+//! what counts as a change.
 
 use super::converge::Declared;
 use super::data::{Plan, Settling, Step};
@@ -8,7 +9,8 @@ use crate::diagnostics::{At, Diagnostic};
 use crate::graph::definition::Graph;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Of steps, those that settle by the place of what says so, with the frames that it says of each pass.
+/// The groups of steps that converge; `frames` has the place and the count of each pass's
+/// declaration.
 ///
 /// # Errors
 /// Passes among them that meddle with what others write, or read it where it may be missing.
@@ -52,8 +54,8 @@ fn written<'a>(steps: &'a [Step], own: &[usize]) -> impl Iterator<Item = &'a Use
     own.iter().flat_map(|i| &steps[*i].uses).filter(|u| u.write)
 }
 
-/// The first other pass that writes what a group writes, that reads what the group keeps before it is through, or that reads
-/// what is not kept at all.
+/// The first other pass that writes a group's output, reads it before the group's last step, or
+/// reads output without a history.
 fn meddler(graph: &Graph, plan: &Plan, own: &[usize]) -> Option<Diagnostic> {
     let steps = &plan.steps;
     let (first, last) = (own.first()?, own.last()?);
@@ -89,7 +91,7 @@ fn meddler(graph: &Graph, plan: &Plan, own: &[usize]) -> Option<Diagnostic> {
 
 /// Steps that depend on some of `own`, over frames too, and on which those depend.
 fn ring(steps: &[Step], own: &[usize]) -> Vec<usize> {
-    // Of both copies of what has a history: what is written is read in this frame or in the next.
+    // Both copies of a resource with a history: it is read in this frame or in the next.
     let touched = |i: usize, how: fn(&Use) -> bool| -> BTreeSet<_> {
         steps[i]
             .uses

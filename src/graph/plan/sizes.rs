@@ -92,7 +92,7 @@ pub(super) fn buffers(
         let bytes = match &buffer.size.value {
             BufferSize::Bytes(ex) => numbers.value(ex),
             BufferSize::Struct(count) => {
-                // Mistakes were told with the shaders. Where none declares it, none reads it.
+                // Linking reported mistakes. A block that no shader declares is not read.
                 let size = layouts.struct_size(name, count.is_some()).ok().flatten();
                 let elements = count.as_ref().map_or(0, |ex| numbers.count(ex, 1, "count"));
                 size.map_or(4.0, |(bytes, stride)| {
@@ -108,7 +108,7 @@ pub(super) fn buffers(
             );
             numbers.error(buffer.size.at, message);
         }
-        // One whose size was told as wrong holds everything.
+        // A buffer with a reported size counts as unlimited.
         let size = if numbers.errors.len() == before {
             bytes as u64
         } else {

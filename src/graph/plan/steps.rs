@@ -91,7 +91,7 @@ impl<'a> Planner<'a, '_> {
         Some(step)
     }
 
-    /// Where every thread stores at its own place, and there are as many as texels, nothing is left of what was there.
+    /// One thread for each texel, each of which stores at its own place, replaces all content.
     fn covers(&self, link: &Linked, step: &mut Step) {
         let (Work::Dispatch(groups), [shader]) = (&step.work, &link.stages[..]) else {
             return;
@@ -354,7 +354,7 @@ impl<'a> Planner<'a, '_> {
         Some(work)
     }
 
-    /// The buffer and byte of a command of so many 32-bit words, which lies in it.
+    /// The buffer and byte offset of a command with this number of 32-bit words.
     fn command(&mut self, path: &Loc<Path>, words: u32) -> Option<(usize, u64)> {
         let at = path.at;
         let buffer = self.graph().buffer(&path.value.buffer)?;

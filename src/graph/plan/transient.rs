@@ -1,5 +1,5 @@
-//! Textures and buffers that a frame begins anew and leaves nothing in: memory is shared by those that are never needed at the
-//! same time.
+//! Transient textures and buffers, which hold nothing between frames. Those that are never needed
+//! at the same time share memory.
 
 use super::data::{Plan, Transient};
 use super::uses::begins;
@@ -9,7 +9,7 @@ use crate::graph::definition::{Graph, Res};
 /// The transient resources that are used.
 ///
 /// # Errors
-/// Those that are read before anything is in them.
+/// Transient resources that are read before anything is written to them.
 pub(super) fn find(graph: &Graph, plan: &Plan) -> Result<Vec<Transient>, Vec<Diagnostic>> {
     let textures = (0..plan.textures.len()).map(|t| Res::Texture(t, false));
     let buffers = (0..plan.buffers.len()).map(|b| Res::Buffer(b, false));
@@ -48,9 +48,10 @@ pub(super) fn find(graph: &Graph, plan: &Plan) -> Result<Vec<Transient>, Vec<Dia
     }
 }
 
-/// Offsets of resources with these sizes, alignments and times in one piece of memory, and the bytes of all. The largest first,
-/// each as low as it fits among those that are there at the same time (greedy by size; Pisarchyk and Lee 2020, "Efficient
-/// Memory Management for Deep Neural Net Inference", section 5.2).
+/// Offsets of resources with these sizes, alignments and times in one piece of memory, and the
+/// bytes of all. The largest first, each as low as it fits among those that are there at the same
+/// time (greedy by size; Pisarchyk and Lee 2020, "Efficient Memory Management for Deep Neural Net
+/// Inference", section 5.2).
 pub fn pack(sizes: &[(u64, u64)], transients: &[Transient]) -> (Vec<u64>, u64) {
     let meet = |a: &Transient, b: &Transient| {
         a.spans

@@ -40,7 +40,7 @@ pub struct Use {
     pub access: Access,
     /// Layout.
     pub layout: Layout,
-    /// Reads what was there.
+    /// Reads the old content.
     pub read: bool,
     /// Writes.
     pub write: bool,
@@ -176,12 +176,12 @@ pub fn merge(uses: Vec<Use>) -> Vec<Use> {
     list
 }
 
-/// Whether a use makes the resource anew.
+/// Whether a use begins new content.
 pub(in crate::graph) fn begins(u: &Use) -> bool {
     u.write && u.overwrite && !u.read
 }
 
-/// A mip. What is read as history is needed as its content at the end of a frame.
+/// A mip. A history read needs the content at the end of the last frame.
 pub(super) type Part = (Res, u32);
 
 pub(super) fn parts(u: &Use) -> impl Iterator<Item = Part> + use<> {

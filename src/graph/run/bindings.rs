@@ -1,10 +1,9 @@
-//! What the steps of a plan bind: pipelines, attachments, descriptor sets.
+//! Bindings of a plan's steps: pipelines, attachments, descriptor sets.
 
 use super::pipelines::{descriptor_type, sampler_desc};
 use super::resources::Resources;
 use super::scene::SceneResources;
 use crate::graph::definition::Graph;
-use crate::graph::externals::EXTERNALS;
 use crate::graph::link::{Bound, BoundCase, Linked, Target, bound_shape};
 use crate::graph::plan::{AttachmentPlan, BindingPlan, Plan, Step};
 use crate::shader::{Resource, Shape};
@@ -16,7 +15,7 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
-/// What a step binds; attachments and sets in even and in odd frames.
+/// Bindings of a step; attachments and sets in even and in odd frames.
 pub(super) struct StepGpu {
     pub pipeline: Option<Arc<Pipeline>>,
     /// Whether its shaders read the step's index.
@@ -38,7 +37,7 @@ pub(super) struct Offered<'a> {
     pub params: &'a Buffer,
 }
 
-/// The sets of a program, and what they refer to.
+/// The descriptor sets of a program, and the objects in them.
 pub(super) struct Sets {
     pool: DescriptorPool,
     samplers: HashMap<SamplerDesc, Sampler>,
@@ -110,7 +109,7 @@ impl Sets {
         };
         let mut textures = Vec::new();
         for (i, (bound, case)) in bound().enumerate() {
-            // Images whose stores were taken out of the shader have no binding.
+            // Images without stores, which were removed from the shader, have no binding.
             let plan = step.bindings.iter().find(|b| b.bound == i);
             textures.push(
                 plan.map(|plan| self.texture(offered, bound, case, plan, parity))
@@ -120,7 +119,9 @@ impl Sets {
         let mut writes = Vec::new();
         for ((bound, case), texture) in bound().zip(&textures) {
             let write = match (&case.target, texture) {
-                (Target::External(e), _) => offered.external(EXTERNALS[*e].name)?,
+                (Target::External(e), _) => {
+                    offered.external(offered.graph.interface.resources[*e].name)?
+                }
                 (Target::Buffer(b), _) => {
                     let last = case.bind.as_ref().is_some_and(|d| d.history);
                     match offered.resources.buffer(offered.plan, *b, last, parity) {

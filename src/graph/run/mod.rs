@@ -1,6 +1,7 @@
 //! A plan on a device.
 
 mod bindings;
+mod incremental;
 mod parts;
 mod pipelines;
 mod program;
@@ -8,12 +9,11 @@ mod readback;
 mod record;
 mod resources;
 mod scene;
-mod sleep;
 mod swap;
 mod transfer;
 
+pub use incremental::Execution;
 pub use parts::{Change, Parts};
 pub use program::{FrameTimes, Program};
 pub use scene::{Geometry, SceneResources};
-pub use sleep::Redo;
 pub use transfer::Update;

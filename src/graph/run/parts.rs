@@ -1,4 +1,4 @@
-//! What a running program hands over to the one that takes its place, so that an edit costs what it changes.
+//! Objects that a program hands over to its replacement, so that an edit costs only its changes.
 
 use super::pipelines::Pipelines;
 use crate::graph::plan::Transient;
@@ -6,15 +6,15 @@ use crate::vulkan::{Buffer, Image, ImageDesc};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// One copy of a resource, two of what has a history; none of what is not made.
+/// One copy of a resource, two with a history, none if it is not made.
 pub(super) type Copies<T> = [Option<Arc<T>>; 2];
 
-/// What a running program has made, to make another from while it runs on.
+/// Objects of a running program, for another program that reuses them.
 #[derive(Clone, Default)]
 pub struct Parts {
     pub(super) pipelines: Pipelines,
     pub(super) images: HashMap<String, Copies<Image>>,
-    /// By name, with the size asked for.
+    /// Buffers by name, with the requested size.
     pub(super) buffers: HashMap<String, (u64, Copies<Buffer>)>,
     /// Names of those that share memory, with when they do.
     pub(super) transients: Vec<(String, Transient)>,
@@ -22,14 +22,14 @@ pub struct Parts {
     pub(super) shared_bytes: u64,
 }
 
-/// What a new program took over and what it had to make.
+/// Numbers of objects that a new program took over and made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Change {
     /// Pipelines taken over.
     pub kept: usize,
     /// Pipelines made.
     pub built: usize,
-    /// Textures and buffers that were there and had to be made anew.
+    /// Textures and buffers that existed and had to be replaced.
     pub resized: usize,
 }
 

@@ -1,4 +1,5 @@
-//! What the graph's words mean to Vulkan: pipelines with their fixed state, descriptors, samplers, clear values.
+//! Vulkan state from a graph's declarations: pipelines with their fixed state, descriptors,
+//! samplers, clear values.
 
 use crate::graph::definition::Graph;
 use crate::graph::file::{AddressMode, Compare, Cull, FilterMode, PassDecl, SamplerDecl, Topology};
@@ -21,18 +22,18 @@ pub(super) fn descriptor_type(resource: &Resource) -> vk::DescriptorType {
     }
 }
 
-/// Pipelines with what they were made from.
+/// Pipelines by their descriptions.
 pub(super) type Pipelines = Vec<(PipelineDesc, Arc<Pipeline>)>;
 
 /// The pipelines of a plan, and which of them each step uses.
 pub(super) struct Made {
     pub pipelines: Pipelines,
     pub keys: Vec<Option<usize>>,
-    /// How many of them were made anew.
+    /// Number of new pipelines.
     pub built: usize,
 }
 
-/// Makes pipelines in parallel; those whose description is among `kept` are taken from there.
+/// Makes pipelines in parallel, and reuses those with a description in `kept`.
 pub(super) fn make_pipelines(
     gpu: &Arc<Gpu>,
     graph: &Graph,
@@ -76,7 +77,8 @@ pub(super) fn make_pipelines(
     })
 }
 
-/// Checks the variables of a pipeline's shaders with the values of constants, on which lengths of arrays may depend.
+/// Checks the variables of a pipeline's shaders with the values of constants, on which lengths of
+/// arrays may depend.
 fn check_variables(desc: &PipelineDesc) -> Result<()> {
     let checked = desc
         .stages
@@ -145,7 +147,7 @@ fn pipeline_desc(
     }
 }
 
-/// The fragment shader without the outputs whose attachments are left out.
+/// The fragment shader without the outputs of attachments that are left out.
 fn needed_outputs(words: &Arc<Vec<u32>>, attachments: &Attachments) -> Arc<Vec<u32>> {
     let unneeded: Vec<u32> = (0u32..)
         .zip(&attachments.color)

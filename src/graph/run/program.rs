@@ -1,15 +1,16 @@
 //! A plan on a device: its resources, pipelines and descriptor sets, and frames of it.
 
 use super::bindings::{Offered, Sets, StepGpu};
+use super::incremental::{Execution, Frame, Versions};
 use super::parts::{Change, Parts};
 use super::pipelines::{Pipelines, make_pipelines};
 use super::record::Recorder;
 use super::resources::{self, Resources};
 use super::scene::SceneResources;
-use super::sleep::{Contents, Frame, Redo};
 use super::transfer::{Update, relayout, send};
 use crate::graph::definition::Res;
 use crate::graph::evaluated::Evaluated;
+use crate::graph::interface::SceneInterface;
 use crate::graph::link::Linked;
 use crate::graph::plan::{Plan, Schedule, schedule};
 use crate::vulkan::{Buffer, Commands, FrameSlot, Gpu, Image, Recording, Result, vk};
@@ -28,20 +29,20 @@ pub struct Program {
     scene: SceneResources,
     pub(super) pipelines: Pipelines,
     steps: Vec<StepGpu>,
-    /// What the steps refer to.
+    /// Objects that the steps refer to.
     _sets: Sets,
     names: Vec<String>,
     pub(super) resources: Resources,
     /// Layouts of all images between frames.
     pub(super) resting: Vec<vk::ImageLayout>,
-    /// What was taken over from the program before.
+    /// Numbers of objects taken over from the last program.
     pub change: Change,
     params: Arc<Buffer>,
     slots: Vec<Slot>,
     pub(super) frame: u64,
     /// Frames that this program has run; the one before it may have run others.
     ran: u64,
-    /// The texture that frames are asked for.
+    /// The texture that frames copy.
     pub(super) shown: Option<usize>,
     /// Whether every frame copies it to the CPU.
     pub(super) reads_back: bool,
@@ -49,15 +50,16 @@ pub struct Program {
     handed: Option<Arc<Buffer>>,
     /// Steps where a pass begins.
     starts: Vec<usize>,
-    /// What frames do.
-    redo: Redo,
-    /// What there is, where only what changes is done or something settles.
-    contents: Option<Contents>,
+    interface: &'static SceneInterface,
+    execution: Execution,
+    /// For incremental execution, and for groups that converge.
+    versions: Option<Versions>,
 }
 
 /// A frame in flight.
 struct Slot {
-    /// By parity, the commands of its last frame, and what they do. Dropped before the queries that they write.
+    /// Commands of its last frame and their work, by parity. Dropped before the queries that they
+    /// write.
     recorded: [Option<(Recorded, Recording)>; 2],
     commands: FrameSlot,
     cpu_ms: f64,
@@ -80,10 +82,10 @@ struct Recorded {
 /// Times of one frame that has finished.
 #[derive(Clone, Debug, Default)]
 pub struct FrameTimes {
-    /// (pass number, milliseconds) on the GPU, in order; 0 for those that slept.
+    /// (pass number, milliseconds) on the GPU, in order; 0 if skipped.
     pub passes: Vec<(usize, f64)>,
-    /// Numbers of the passes that slept ([`Redo::Changed`]).
-    pub asleep: Vec<usize>,
+    /// Numbers of the skipped passes ([`Execution::Incremental`]).
+    pub skipped: Vec<usize>,
     /// First to last command of the frame on the GPU, ms.
     pub gpu_ms: f64,
     /// Recording and submitting on the CPU, ms.
@@ -98,11 +100,11 @@ pub struct FrameTimes {
 const FRAMES_IN_FLIGHT: usize = 3;
 
 impl Program {
-    /// Makes everything that the plan needs, except what can be taken from the parts of a running program; see
-    /// [`Program::swap_in`].
+    /// Makes everything that the plan needs, except what can be taken from the parts of a running
+    /// program; see [`Program::swap_in`].
     ///
     /// # Errors
-    /// Out of device memory, and what the driver refuses.
+    /// Out of device memory; errors of the driver.
     pub fn new(
         gpu: &Arc<Gpu>,
         set: &Evaluated<'_>,
@@ -174,10 +176,11 @@ impl Program {
             slots: Vec::new(),
             frame: 0,
             ran: 0,
-            redo: Redo::All,
-            contents: None,
+            interface: set.graph.interface,
+            execution: Execution::Full,
+            versions: None,
         };
-        program.set_redo(Redo::All);
+        program.set_execution(Execution::Full);
         let timestamps = u32::try_from(program.starts.len() + 1).unwrap_or(u32::MAX);
         for _ in 0..FRAMES_IN_FLIGHT {
             program.slots.push(Slot {
@@ -193,7 +196,8 @@ impl Program {
         Ok(program)
     }
 
-    /// Gives every new image its first layout and zeroes what is new, so that first frames are like any other.
+    /// Gives every new image its first layout and clears it, so that first frames are like any
+    /// other.
     fn initialise(&mut self, parts: &Parts) -> Result<()> {
         let dst = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
         for layout in self
@@ -203,7 +207,7 @@ impl Program {
         {
             *layout = dst;
         }
-        // What is transient is begun by every frame.
+        // Every frame begins transient resources.
         let buffers = self
             .resources
             .buffers
@@ -256,8 +260,8 @@ impl Program {
         self.params.clone()
     }
 
-    /// Records and submits a frame, after writing `updates` into uniform and scene buffers. Returns the times of the
-    /// frame that ran in the same slot before, if one did.
+    /// Records and submits a frame, after writing `updates` into uniform and scene buffers. Returns
+    /// the times of the frame that ran in the same slot before, if one did.
     ///
     /// # Errors
     /// The device was lost.
@@ -274,9 +278,9 @@ impl Program {
         slots[slot].cpu_ms = start.elapsed().as_secs_f64() * 1e3;
         self.slots = slots;
         if result.is_err() {
-            // Nobody knows what such a frame has done.
-            self.contents = None;
-            self.set_redo(self.redo);
+            // The effect of such a frame is unknown.
+            self.versions = None;
+            self.set_execution(self.execution);
         }
         result?;
         self.frame += 1;
@@ -285,8 +289,8 @@ impl Program {
         Ok(finished)
     }
 
-    /// Sends what changed, and the commands of a frame behind it: those of the last one that did the same, if there is one.
-    /// Recording takes most of the time of a CPU's frame.
+    /// Sends what changed, and the commands of a frame behind it: those of the last one that did
+    /// the same, if there is one. Recording takes most of the time of a CPU's frame.
     fn submit(
         &self,
         slot: &mut Slot,
@@ -294,7 +298,7 @@ impl Program {
         updates: &[Update],
         parity: usize,
     ) -> Result<()> {
-        slot.stamped = self.runs(&frame.awake);
+        slot.stamped = self.runs(&frame.runs);
         let Slot {
             commands,
             recorded,
@@ -363,12 +367,12 @@ impl Program {
     }
 
     /// From the next frame on, does all or what changes.
-    pub fn set_redo(&mut self, redo: Redo) {
-        self.redo = redo;
-        if redo == Redo::All && self.plan.settling.is_empty() {
-            self.contents = None;
-        } else if self.contents.is_none() {
-            self.contents = Some(Contents::new(&self.linked, &self.plan));
+    pub fn set_execution(&mut self, execution: Execution) {
+        self.execution = execution;
+        if execution == Execution::Full && self.plan.settling.is_empty() {
+            self.versions = None;
+        } else if self.versions.is_none() {
+            self.versions = Some(Versions::new(self.interface, &self.linked, &self.plan));
         }
     }
 
@@ -378,14 +382,15 @@ impl Program {
     /// The device was lost.
     pub fn restart(&mut self) -> Result<Vec<FrameTimes>> {
         let finished = self.finish_all()?;
-        (self.frame, self.ran, self.contents) = (0, 0, None);
-        self.set_redo(self.redo);
+        (self.frame, self.ran, self.versions) = (0, 0, None);
+        self.set_execution(self.execution);
         self.resting.clone_from(&self.schedule.ends[1]);
         self.initialise(&Parts::default())?;
         Ok(finished)
     }
 
-    /// Whether all passes that gather over frames rest: further frames make the same picture until something changes.
+    /// Whether all passes that gather over frames rest: further frames make the same picture until
+    /// something changes.
     pub fn is_at_rest(&self) -> bool {
         let frames = self
             .plan
@@ -395,27 +400,27 @@ impl Program {
         let declared = frames > 0 && frames == self.plan.convergence.changed;
         declared
             && self
-                .contents
+                .versions
                 .as_ref()
-                .is_some_and(|contents| contents.is_at_rest(&self.plan))
+                .is_some_and(|versions| versions.have_converged())
     }
 
     /// What frames do.
-    pub fn redo(&self) -> Redo {
-        self.redo
+    pub fn execution(&self) -> Execution {
+        self.execution
     }
 
-    /// What the next frame does.
+    /// The work of the next frame.
     fn work(&mut self, updates: &[Update], odd: bool) -> Frame {
-        let Some(contents) = &mut self.contents else {
+        let Some(versions) = &mut self.versions else {
             return Frame {
-                awake: vec![true; self.plan.steps.len()],
-                keeping: Vec::new(),
+                runs: vec![true; self.plan.steps.len()],
+                carries: Vec::new(),
             };
         };
         for Update { buffer, at, bytes } in updates {
             if Arc::ptr_eq(buffer, &self.params) {
-                contents.update("params", None, bytes);
+                versions.update("params", None, bytes);
             }
             for (name, _) in self
                 .scene
@@ -423,10 +428,10 @@ impl Program {
                 .iter()
                 .filter(|(_, b)| Arc::ptr_eq(b, buffer))
             {
-                contents.update(name, *at, bytes);
+                versions.update(name, *at, bytes);
             }
         }
-        contents.frame(&self.plan, odd, self.redo)
+        versions.frame(odd, self.execution)
     }
 
     /// Whether a step of each pass runs, in the order of `starts`.
@@ -444,7 +449,8 @@ impl Program {
         self.reads_back = reads_back;
     }
 
-    /// Where the next frame copies the shown texture to, for another device; what is too small for it is left alone.
+    /// The buffer for the next frame's copy of the shown texture, for another device. A buffer that
+    /// is too small is ignored.
     pub fn hand_over(&mut self, to: Option<Arc<Buffer>>) {
         let bytes = self.shown_bytes();
         self.handed = to.filter(|b| bytes > 0 && b.size >= bytes);
@@ -495,7 +501,8 @@ impl Program {
         }
     }
 
-    /// Waits until at most so many frames are unfinished and returns the times of the others, in order.
+    /// Waits until at most `unfinished` frames are unfinished and returns the times of the others,
+    /// in order.
     ///
     /// # Errors
     /// The device was lost.
@@ -543,7 +550,7 @@ impl Program {
         // Devices without timestamps say nothing.
         let timed = passes.clone().filter(|_| !ticks.is_empty());
         Ok(Some(FrameTimes {
-            asleep: passes.filter(|p| !p.1).map(|p| p.0).collect(),
+            skipped: passes.filter(|p| !p.1).map(|p| p.0).collect(),
             passes: timed
                 .map(|(pass, ran)| {
                     (
@@ -573,8 +580,8 @@ impl Program {
 
 impl Drop for Program {
     fn drop(&mut self) {
-        // All frames in flight end before anything that one of them uses is destroyed. Of a hung or lost device there is
-        // nothing to wait for.
+        // All frames in flight end before their objects are destroyed. A hung or lost device needs
+        // no wait.
         for slot in &mut self.slots {
             let _ = slot.commands.wait();
         }

@@ -8,7 +8,8 @@ use crate::vulkan::{Buffer, Commands, Result, vk};
 use gpu_allocator::MemoryLocation;
 
 impl Program {
-    /// Copies one mip and layer of a texture, or a (first texel, extent) box of it, to the CPU: tightly packed texels.
+    /// Copies one mip and layer of a texture, or a (first texel, extent) box of it, to the CPU:
+    /// tightly packed texels.
     ///
     /// # Errors
     /// The device was lost, out of memory.
@@ -94,7 +95,8 @@ impl Program {
         Ok(target.bytes()[..usize::try_from(self.plan.buffers[buffer].size).unwrap_or(0)].to_vec())
     }
 
-    /// (name, bytes on the device) of every resource made; what transient ones share is one of them.
+    /// (name, bytes on the device) of every resource made; what transient ones share is one of
+    /// them.
     pub fn memory(&self, graph: &Graph) -> Vec<(String, u64)> {
         let Resources {
             images,

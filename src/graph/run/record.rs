@@ -1,10 +1,10 @@
 //! The commands of a frame.
 
 use super::bindings::StepGpu;
+use super::incremental::Frame;
 use super::pipelines::clear_value;
 use super::resources::Resources;
 use super::scene::Geometry;
-use super::sleep::Frame;
 use super::transfer::{copy_out, image_barrier, relayout};
 use crate::graph::definition::Res;
 use crate::graph::file::Which;
@@ -50,17 +50,18 @@ impl Recorder<'_> {
                 commands.begin_label(&self.names[step.pass]);
                 labelled = true;
             }
-            // Those of steps that sleep too: layouts and waits are then as in any other frame.
+            // Skipped steps keep their barriers, so that layouts and waits are the same in every
+            // frame.
             self.barriers(commands, &self.schedule.barriers[parity][i]);
-            if frame.awake[i] {
+            if frame.runs[i] {
                 self.record_step(commands, step, &self.steps[i], parity);
             }
             for (group, _) in self
                 .plan
                 .settling
                 .iter()
-                .zip(&frame.keeping)
-                .filter(|(_, keeps)| **keeps)
+                .zip(&frame.carries)
+                .filter(|(_, carries)| **carries)
             {
                 if group.steps.last() == Some(&i) {
                     self.keep(commands, &group.kept, i, parity);
@@ -98,7 +99,8 @@ impl Recorder<'_> {
         }
     }
 
-    /// Brings what the frame before left into this frame's copies, after a step. Rare, or thrown away: it waits for all.
+    /// Copies the last frame's content into this frame's copies, after a step. It waits for
+    /// everything, because it is rare.
     fn keep(&self, commands: &mut Commands<'_>, kept: &[Res], step: usize, parity: usize) {
         let (src, dst) = (
             vk::ImageLayout::TRANSFER_SRC_OPTIMAL,

@@ -9,7 +9,7 @@ use crate::vulkan::{
 use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
 
-/// What a program works on.
+/// The textures and buffers of a program.
 #[derive(Default)]
 pub(super) struct Resources {
     pub images: Vec<Copies<Image>>,
@@ -55,7 +55,8 @@ impl Resources {
         self.buffers[buffer][plan.copy_of(Res::Buffer(buffer, last), parity == 1)].as_ref()
     }
 
-    /// Takes all transient resources from parts, if these are the same ones at the same times; else none.
+    /// Takes all transient resources from parts, if these are the same ones at the same times; else
+    /// none.
     fn take_over(
         &mut self,
         graph: &Graph,
@@ -143,7 +144,8 @@ pub(super) fn make(
     parts: &Parts,
     change: &mut Change,
 ) -> Result<Resources> {
-    // What another program left in it may stay where somebody writes it, and nobody who would is off.
+    // Content of another program may stay if a pass writes the resource, and none of these passes
+    // is off.
     let may_stay = |res: Res| {
         let written = plan
             .steps

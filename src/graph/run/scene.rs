@@ -1,4 +1,4 @@
-//! What a scene offers to the passes of a graph.
+//! A scene's resources for the passes of a graph.
 
 use crate::vulkan::{Buffer, Sampler, View};
 use std::collections::HashMap;
@@ -17,7 +17,7 @@ pub struct Geometry {
     pub opaque: u32,
 }
 
-/// The scene's resources by the names of [`EXTERNALS`](crate::graph::externals::EXTERNALS).
+/// The scene's resources by the names of its [interface](crate::graph::interface::SceneInterface).
 #[derive(Clone)]
 pub struct SceneResources {
     /// Buffers.
@@ -26,8 +26,9 @@ pub struct SceneResources {
     pub textures: HashMap<&'static str, Arc<View>>,
     /// How those are sampled.
     pub sampler: Arc<Sampler>,
-    /// What is drawn.
+    /// The draws.
     pub geometry: Geometry,
-    /// Specialisation constants (id, value) by which shaders leave out code that the scene does not need.
+    /// Specialisation constants (id, value) by which shaders leave out code that the scene does not
+    /// need.
     pub constants: Vec<(u32, u32)>,
 }

@@ -1,4 +1,5 @@
-//! Reload: a program hands over what its new program can use as it is, so that an edit costs what it changes.
+//! Reload: a program hands over what its new program can use as it is, so that an edit costs what
+//! it changes.
 
 use super::parts::Parts;
 use super::program::Program;
@@ -9,7 +10,7 @@ use crate::vulkan::{Commands, Image, Result, vk};
 use std::sync::Arc;
 
 impl Program {
-    /// What a new program can take over. The program may run on while the new program is made.
+    /// Objects that a new program can take over. The program may run while the new one is made.
     pub fn parts(&self, graph: &Graph) -> Parts {
         let Resources {
             images,
@@ -38,19 +39,20 @@ impl Program {
         }
     }
 
-    /// Takes the place of the program that this one was made from: waits for its frames, goes on with its count of
-    /// frames (so that what was last frame's stays last frame's) and brings images into the layouts of its own frames.
+    /// Takes the place of the program that this one was made from: waits for its frames, goes on
+    /// with its count of frames (so that last frame's copies stay the same) and brings images into
+    /// the layouts of its own frames.
     ///
     /// # Errors
     /// The device was lost.
     pub fn swap_in(&mut self, old: &mut Program) -> Result<()> {
         old.finish_all()?;
         self.frame = old.frame;
-        self.set_redo(old.redo());
+        self.set_execution(old.execution());
         let before = usize::try_from((self.frame + 1) % 2).unwrap_or(0);
         let mut wanted = self.schedule.ends[before].clone();
         let mut barriers = Vec::new();
-        // What is transient is taken out of any layout where it begins.
+        // Transient resources begin from any layout.
         for (_, image, places) in self
             .images()
             .filter(|(t, ..)| !self.plan.textures[*t].transient)

@@ -26,7 +26,8 @@ impl Update {
     }
 }
 
-/// Writes new content into buffers, after all that reads the old one and before all that reads the new one.
+/// Writes new content into buffers, after all that reads the old one and before all that reads the
+/// new one.
 pub(super) fn send(commands: &mut Commands<'_>, updates: &[Update]) {
     if !updates.is_empty() {
         let barrier = |src, src_access, dst, dst_access| {

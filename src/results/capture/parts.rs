@@ -2,8 +2,8 @@
 
 use super::{Manifest, SOURCES, failed};
 use crate::graph::LightPart;
-use crate::graph::load::{Folders, load};
-use crate::lab::{LabError, parts_of};
+use crate::graph::load::Folders;
+use crate::lab::{LabError, load, parts_of};
 use crate::metrics::Linear;
 use crate::results::picture;
 use std::collections::BTreeMap;

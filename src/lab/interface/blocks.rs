@@ -1,5 +1,5 @@
-//! The structs of the scene's resources as the program fills them. Each is stated once, here; what a shader declares of one
-//! is compared with it by name.
+//! The structs of the scene's resources as the program fills them. Shaders that declare one
+//! differently are refused.
 
 use crate::shader::Layout;
 use crate::shader::layout::{Member, Scalar};
@@ -36,13 +36,13 @@ macro_rules! block {
         $(#[$about])*
         #[repr(C)]
         #[derive(Clone, Copy, Debug, Pod, Zeroable, PartialEq)]
-        pub(crate) struct $name {
+        pub struct $name {
             $(pub $field: $ty,)*
         }
 
         impl $name {
             /// Its members and bytes.
-            fn layout() -> (Vec<Member>, usize) {
+            pub fn layout() -> (Vec<Member>, usize) {
                 let member = |name: &str, offset: usize, layout: Layout| Member {
                     name: name.into(),
                     offset: u32::try_from(offset).unwrap_or(u32::MAX),
@@ -79,10 +79,6 @@ block! {
         delta_time: f32,
     }
 }
-
-/// Where `camera` counts frames.
-pub(super) const CAMERA_COUNTS: std::ops::Range<usize> =
-    offset_of!(CameraBlock, frame)..offset_of!(CameraBlock, delta_time);
 
 block! {
     /// The uniform block `sceneInfo` (std140).
@@ -173,71 +169,5 @@ block! {
         material: u32,
         first_index: u32,
         index_count: u32,
-    }
-}
-
-/// Why a shader's declaration of one of the scene's resources does not fit, and the member that it is about, if it is one.
-/// Members of other names, and resources without a struct, are the shader's own affair.
-pub(super) fn mismatch(resource: &str, declared: &Layout) -> Option<(String, Option<String>)> {
-    let (elements, (members, bytes)) = match resource {
-        "camera" => (false, CameraBlock::layout()),
-        "sceneInfo" => (false, SceneInfoBlock::layout()),
-        "lights" => (true, LightBlock::layout()),
-        "shadowViews" => (true, ShadowBlock::layout()),
-        "materials" => (true, MaterialBlock::layout()),
-        "instances" => (true, InstanceBlock::layout()),
-        "draws" => (true, DrawBlock::layout()),
-        "emitters" => (true, EmitterBlock::layout()),
-        _ => return None,
-    };
-    let declared = if elements {
-        element(declared)?
-    } else {
-        (declared, None)
-    };
-    if let Some(stride) = declared.1.filter(|stride| *stride as usize != bytes) {
-        return Some((
-            format!(
-                "an element of '{resource}' has {bytes} bytes, and the shader declares {stride}"
-            ),
-            None,
-        ));
-    }
-    for member in declared.0.members() {
-        let end = member.offset.saturating_add(member.layout.bytes());
-        let message = match members.iter().find(|m| m.name == member.name) {
-            Some(known) if known.layout != member.layout => {
-                format!(
-                    "is of type {}, and the shader declares {}",
-                    known.layout, member.layout
-                )
-            }
-            Some(known) if known.offset != member.offset => {
-                format!(
-                    "lies at byte {}, and the shader declares it at {}",
-                    known.offset, member.offset
-                )
-            }
-            None if end as usize > bytes => format!("ends at byte {end}, and there are {bytes}"),
-            _ => continue,
-        };
-        return Some((
-            format!("'{}' of '{resource}' {message}", member.name),
-            Some(member.name.clone()),
-        ));
-    }
-    None
-}
-
-/// The struct of an array that is all of a block or ends it, and its stride.
-fn element(block: &Layout) -> Option<(&Layout, Option<u32>)> {
-    match block.members() {
-        [.., list] => match &list.layout {
-            Layout::Array { of, stride, .. } if !of.members().is_empty() => {
-                Some((&**of, Some(*stride)))
-            }
-            _ => None,
-        },
-        _ => None,
     }
 }

@@ -1,12 +1,12 @@
-//! What is not done twice: pictures of frames that do only what changes are those of frames that do all, to the bit, whatever is
-//! edited between them; and what nothing has changed sleeps.
+//! Incremental execution: after any edits, incremental frames are equal to full ones to the bit, and unchanged passes are
+//! skipped.
 
 mod common;
 
 use common::{assert_clean, experiment, floats, lab, mean, root, scene};
 use conelab::diagnostics::{At, Loc};
 use conelab::experiment::{Experiment, PlacedCamera};
-use conelab::graph::run::{FrameTimes, Redo};
+use conelab::graph::run::{Execution, FrameTimes};
 use conelab::lab::{Lab, Session};
 use conelab::scene::Scene;
 use std::collections::BTreeSet;
@@ -60,7 +60,7 @@ impl Pair {
             scene(scene_name),
         );
         let mut sides = [(); 2].map(|()| build(lab, &experiment, &scene, None));
-        sides[1].set_redo(Redo::Changed);
+        sides[1].set_execution(Execution::Incremental);
         Pair {
             experiment,
             scene,
@@ -91,8 +91,8 @@ impl Pair {
             *side = next;
         }
         assert_eq!(
-            self.sides[1].redo(),
-            Redo::Changed,
+            self.sides[1].execution(),
+            Execution::Incremental,
             "the program that follows does what this one did"
         );
     }
@@ -161,13 +161,13 @@ impl Pair {
         }
     }
 
-    /// A frame of each; the passes that slept.
+    /// A frame of each; the skipped passes.
     fn frame(&mut self, what: &str) -> BTreeSet<String> {
         let [all, changed] = self.sides.each_mut().map(run);
         assert!(
-            all.asleep.is_empty(),
-            "{what}: {:?} slept where all is done",
-            all.asleep
+            all.skipped.is_empty(),
+            "{what}: {:?} skipped in full execution",
+            all.skipped
         );
         for name in WANTED {
             let [a, b] = self
@@ -176,11 +176,11 @@ impl Pair {
                 .map(|s| s.texels(name, 0, 0).unwrap().bytes);
             assert!(
                 a == b,
-                "{what}: '{name}' differs; asleep: {:?}",
-                names(&self.sides[1], &changed.asleep)
+                "{what}: '{name}' differs; skipped: {:?}",
+                names(&self.sides[1], &changed.skipped)
             );
         }
-        names(&self.sides[1], &changed.asleep)
+        names(&self.sides[1], &changed.skipped)
     }
 }
 
@@ -234,22 +234,22 @@ fn pictures_are_the_same_whatever_is_edited() {
             let mut pair = Pair::new(&lab, "moving-box", &[&path[..], more].concat());
             let mut numbers = Numbers(0x9e37_79b9 + seed);
             seed += 1;
-            let (mut slept, mut rested, mut last) = (0, 0, "the start");
+            let (mut count, mut converged, mut last) = (0, 0, "the start");
             for edit in 0..40 {
                 for frame in 0..1 + numbers.below(4) * numbers.below(4) {
                     let what = format!("{path:?} {more:?}, edit {edit}, of {last}, frame {frame}");
-                    let asleep = pair.frame(&what);
-                    slept += asleep.len();
-                    rested += usize::from(asleep.contains("gather"));
+                    let skipped = pair.frame(&what);
+                    count += skipped.len();
+                    converged += usize::from(skipped.contains("gather"));
                 }
                 last = pair.edit(&lab, home.path(), &mut numbers);
             }
-            println!("{path:?} {more:?}: {slept} passes slept, gathering rested {rested} times");
-            // Voxels that are the mean of frames, or lie around the camera, depend on what they were: they are never still.
-            let rests = rested > 5 || !more.is_empty();
+            println!("{path:?} {more:?}: {count} passes skipped, gathering {converged} times");
+            // Voxels that average frames, or follow the camera, depend on their own past and never converge.
+            let rests = converged > 5 || !more.is_empty();
             assert!(
-                slept > 200 && rests,
-                "{slept} passes slept, {rested} times rested: nothing was tested"
+                count > 200 && rests,
+                "{count} passes skipped, gathering {converged} times: nothing was tested"
             );
         }
     }
@@ -257,7 +257,7 @@ fn pictures_are_the_same_whatever_is_edited() {
 }
 
 #[test]
-fn what_nothing_has_changed_sleeps() {
+fn unchanged_passes_are_skipped() {
     let lab = lab(root());
     for (path, shadow, seen) in [
         (
@@ -282,24 +282,25 @@ fn what_nothing_has_changed_sleeps() {
         ];
         // A lamp of one shadow map: layers are drawn one by one, and a clear of one leaves the others.
         let mut pair = Pair::new(&lab, "cornell", &path);
-        let slept = pair.frame("the first");
-        assert!(slept.is_empty(), "{slept:?}");
+        let skipped = pair.frame("the first");
+        assert!(skipped.is_empty(), "{skipped:?}");
         // What the frame before left is kept beside it: both are filled first.
         pair.frame("the second");
-        let slept = pair.frame("the third");
+        let skipped = pair.frame("the third");
         assert!(
-            shadow.iter().chain([&seen]).all(|p| slept.contains(*p)),
-            "{slept:?}"
+            shadow.iter().chain([&seen]).all(|p| skipped.contains(*p)),
+            "{skipped:?}"
         );
         // The camera moves: what is seen is drawn, what the lamp sees is not.
         for number in 0..3 {
             let placed =
                 PlacedCamera::new((2.5 + 0.1 * number as f32, 2.5, 9.0), (2.5, 2.5, 0.0), 40.0);
             pair.sides.iter_mut().for_each(|s| s.place_camera(&placed));
-            let slept = pair.frame("the camera moves");
+            let skipped = pair.frame("the camera moves");
             assert!(
-                shadow.iter().chain(&voxels).all(|p| slept.contains(*p)) && !slept.contains(seen),
-                "{slept:?}"
+                shadow.iter().chain(&voxels).all(|p| skipped.contains(*p))
+                    && !skipped.contains(seen),
+                "{skipped:?}"
             );
         }
         // The lamp moves.
@@ -307,17 +308,17 @@ fn what_nothing_has_changed_sleeps() {
         lights[0].position.x += 0.1;
         let sky = pair.scene.sky;
         assert!(pair.sides.iter_mut().all(|s| s.set_lights(&lights, sky)));
-        let slept = pair.frame("the lamp moves");
-        assert!(shadow.iter().all(|p| !slept.contains(*p)), "{slept:?}");
-        assert!(voxels.iter().all(|p| slept.contains(*p)), "{slept:?}");
+        let skipped = pair.frame("the lamp moves");
+        assert!(shadow.iter().all(|p| !skipped.contains(*p)), "{skipped:?}");
+        assert!(voxels.iter().all(|p| skipped.contains(*p)), "{skipped:?}");
         // The exposure is of the picture alone.
         pair.frame("the camera rests");
         pair.frame("and still rests");
         pair.set(&lab, "exposure", "1");
-        let slept = pair.frame("the exposure");
+        let skipped = pair.frame("the exposure");
         assert!(
-            shadow.iter().chain([&seen]).all(|p| slept.contains(*p)),
-            "{slept:?}"
+            shadow.iter().chain([&seen]).all(|p| skipped.contains(*p)),
+            "{skipped:?}"
         );
     }
     assert_clean(&lab);
@@ -335,12 +336,12 @@ fn what_gathers_over_frames_rests() {
         let settings = [("bounce_frames", "2"), ("gather_frames", "4")];
         let mut pair = Pair::new(&lab, "cornell", &[&path[..], &settings].concat());
         let mut pictures = Vec::new();
-        let mut slept = BTreeSet::new();
+        let mut skipped = BTreeSet::new();
         for frame in 0..64 + 16 {
-            slept = pair.frame(&format!("frame {frame}"));
+            skipped = pair.frame(&format!("frame {frame}"));
             assert!(
-                frame > 64 || !slept.contains(gather),
-                "frame {frame}: {slept:?}"
+                frame > 64 || !skipped.contains(gather),
+                "frame {frame}: {skipped:?}"
             );
             pictures.push(mean(&floats(&mut pair.sides[0], "radiance", 0)));
         }
@@ -352,9 +353,9 @@ fn what_gathers_over_frames_rests() {
             .map(|s| s.pass)
             .collect();
         assert_eq!(
-            slept,
+            skipped,
             names(&pair.sides[1], &passes.into_iter().collect::<Vec<_>>()),
-            "everything sleeps"
+            "everything is skipped"
         );
         // Half of the frames would have done: what is missing at the end is less than that.
         let (half, end) = (pictures[32], pictures[79]);
@@ -367,10 +368,10 @@ fn what_gathers_over_frames_rests() {
         let placed = PlacedCamera::new((2.4, 2.5, 9.0), (2.5, 2.5, 0.0), 40.0);
         pair.sides.iter_mut().for_each(|s| s.place_camera(&placed));
         for frame in 0..3 {
-            let slept = pair.frame(&format!("the camera moved, frame {frame}"));
+            let skipped = pair.frame(&format!("the camera moved, frame {frame}"));
             assert!(
-                gathering.iter().all(|p| slept.contains(*p)) && !slept.contains(rays),
-                "{slept:?}"
+                gathering.iter().all(|p| skipped.contains(*p)) && !skipped.contains(rays),
+                "{skipped:?}"
             );
         }
         // The lamp moves: in the same frame it is injected, and all gather.
@@ -378,13 +379,16 @@ fn what_gathers_over_frames_rests() {
         lights[0].color *= 2.0;
         let sky = pair.scene.sky;
         assert!(pair.sides.iter_mut().all(|s| s.set_lights(&lights, sky)));
-        let slept = pair.frame("the lamp is brighter");
+        let skipped = pair.frame("the lamp is brighter");
         assert!(
-            !slept.contains("inject") && !slept.contains(rays),
-            "{slept:?}"
+            !skipped.contains("inject") && !skipped.contains(rays),
+            "{skipped:?}"
         );
-        let slept = pair.frame("the lamp was made brighter");
-        assert!(gathering.iter().all(|p| !slept.contains(*p)), "{slept:?}");
+        let skipped = pair.frame("the lamp was made brighter");
+        assert!(
+            gathering.iter().all(|p| !skipped.contains(*p)),
+            "{skipped:?}"
+        );
     }
     assert_clean(&lab);
 }
