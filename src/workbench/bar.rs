@@ -19,7 +19,7 @@ impl Workbench {
             self.scenes_menu(ui);
             self.warning_count(ui);
             ui.separator();
-            let (undo, redo) = self.history.can();
+            let (undo, redo) = self.undo.history.can();
             if ui.add_enabled(undo, egui::Button::new("undo")).on_hover_text("Ctrl Z").clicked() {
                 self.go(true);
             }
@@ -56,12 +56,12 @@ impl Workbench {
                 ui.selectable_value(&mut self.view.timers, Rows::Stages, "stages");
                 ui.selectable_value(&mut self.view.timers, Rows::Passes, "passes");
             }
-            let mut panels = !self.hidden;
+            let mut panels = !self.layout.hidden;
             if ui.toggle_value(&mut panels, "panels").on_hover_text("H").clicked() {
-                self.hidden = !panels;
+                self.layout.hidden = !panels;
             }
             if ui.button("help").on_hover_text("F1").clicked() {
-                self.help = !self.help;
+                self.layout.help = !self.layout.help;
             }
         });
     }
@@ -98,8 +98,8 @@ impl Workbench {
 
     fn experiments_menu(&mut self, ui: &mut Ui) {
         let mut chosen = None;
-        let response = ui.menu_button(format!("experiment: {}", self.name), |ui| {
-            for path in ron_files(&self.root.join("configs")) {
+        let response = ui.menu_button(format!("experiment: {}", self.experiment.name), |ui| {
+            for path in ron_files(&self.setup.home.root.join("configs")) {
                 let name = path
                     .file_stem()
                     .map_or(String::new(), |s| s.to_string_lossy().into_owned());
@@ -128,7 +128,7 @@ impl Workbench {
 
     fn scenes_menu(&mut self, ui: &mut Ui) {
         let mut chosen = None;
-        let name = if self.no_scene {
+        let name = if self.scene.missing {
             "none".into()
         } else {
             short(&self.desired.scene)
@@ -141,14 +141,14 @@ impl Workbench {
                 }
             }
             ui.separator();
-            for path in ron_files(&self.root.join("configs/scenes")) {
+            for path in ron_files(&self.setup.home.root.join("configs/scenes")) {
                 if ui.button(short(&path.to_string_lossy())).clicked() {
                     chosen = Some(path.to_string_lossy().into_owned());
                     ui.close();
                 }
             }
             ui.separator();
-            if let Some(spec) = self.models.menu(ui) {
+            if let Some(spec) = self.scene.models.menu(ui) {
                 chosen = Some(spec);
                 ui.close();
             }
@@ -170,14 +170,14 @@ impl Workbench {
             .on_hover_text("Show them on the Scene tab")
             .clicked()
         {
-            self.tab = crate::workbench::tabs::surroundings::TAB;
+            self.tabs.open = crate::workbench::tabs::surroundings::TAB;
         }
     }
 
     pub(super) fn status_line(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
-            if let Some((what, part)) = self.loading.clone() {
-                let lasts = self.sent_at.elapsed().as_secs();
+            if let Some((what, part)) = self.scene.loading.clone() {
+                let lasts = self.sent.at.elapsed().as_secs();
                 ui.add(
                     egui::ProgressBar::new(part)
                         .desired_width(200.0)
@@ -194,7 +194,7 @@ impl Workbench {
             }
             if let Some(p) = &self.sides[0].picture {
                 ui.weak(format!("{}x{}", p.size[0], p.size[1]));
-                ui.weak(format!("last frame {:.2} ms", p.gpu_ms))
+                ui.weak(format!("last frame {:.2} ms", p.times.gpu_ms))
                     .on_hover_text("On the GPU, from first to last command");
                 if p.preview {
                     ui.weak("preview, while the passes are built");
@@ -205,7 +205,7 @@ impl Workbench {
             if let Some(what) = self.pending(ui.ctx()) {
                 ui.colored_label(CHANGED, what);
             }
-            ui.label(&self.status);
+            ui.label(&self.messages.status);
         });
     }
 }

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 /// Variables that may name the editor, the first that is set counts.
 const VARIABLES: [&str; 3] = ["CONELAB_EDITOR", "VISUAL", "EDITOR"];
 
-/// Opens a file; what is said about it.
+/// Opens a file. Returns a message.
 pub fn open(file: &Path, line: u32) -> String {
     let named = VARIABLES
         .iter()
@@ -28,15 +28,15 @@ pub fn open(file: &Path, line: u32) -> String {
     }
 }
 
-/// The words of a command, with the file and the line in their places; the file at the end where it has none. No shell
-/// reads them.
+/// The words of a command, with the file and the line in their places; the file at the end where it
+/// has none. No shell reads them.
 fn command(text: &str, file: &Path, line: u32) -> Vec<String> {
     let file = file.to_string_lossy();
     let mut words: Vec<String> = text.split_whitespace().map(String::from).collect();
     if !text.contains("{file}") {
         words.push("{file}".into());
     }
-    // A file's name is put in last: what stands in it is no place for a line.
+    // The file name is inserted last, because it may contain a placeholder.
     words
         .iter()
         .map(|w| {
@@ -57,7 +57,7 @@ fn start(words: &[impl AsRef<OsStr>]) -> std::io::Result<()> {
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()?;
-    // Nobody waits for an editor, but one that has ended must not stay.
+    // A finished editor must not stay as a zombie process.
     std::thread::spawn(move || child.wait());
     Ok(())
 }

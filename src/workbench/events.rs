@@ -1,4 +1,5 @@
-//! What happens in the window, one JSON object a line, for scripts and tests (`conelab view --events FILE`).
+//! What happens in the window, one JSON object a line, for scripts and tests (`conelab view
+//! --events FILE`).
 
 use egui::accesskit;
 use serde_json::{Value, json};
@@ -29,7 +30,7 @@ pub struct Events {
 }
 
 impl Events {
-    /// Writes to a file, which is made anew.
+    /// Writes to a file, which is replaced.
     ///
     /// # Errors
     /// The file cannot be made.
@@ -67,8 +68,8 @@ impl Events {
         self.place = place;
     }
 
-    /// Writes where the widgets are, in points, when that changed; at most some times a second. `true` if more is to
-    /// be written later.
+    /// Writes where the widgets are, in points, when that changed; at most some times a second.
+    /// `true` if more is to be written later.
     pub fn widgets(&mut self, update: Option<&accesskit::TreeUpdate>, scale: f32) -> bool {
         if let Some(update) = update {
             self.nodes = update

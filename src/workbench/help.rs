@@ -3,7 +3,7 @@
 use crate::workbench::Workbench;
 use egui::{Key, KeyboardShortcut, Modifiers, Ui};
 
-/// What a key does.
+/// The effect of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     Help,
@@ -37,7 +37,7 @@ const KEYS: [(Action, KeyboardShortcut, &str); 19] = [
     (
         Action::Undo,
         KeyboardShortcut::new(Modifiers::COMMAND, Key::Z),
-        "undo the last edit: parameters, passes, lights, scene, what was opened",
+        "undo the last edit: parameters, passes, lights, scene, opened file",
     ),
     (
         Action::Redo,
@@ -77,7 +77,7 @@ const KEYS: [(Action, KeyboardShortcut, &str); 19] = [
     (
         Action::Capture,
         KeyboardShortcut::new(NONE, Key::F12),
-        "capture what is shown to captures/",
+        "capture the picture to captures/",
     ),
     (
         Action::Panels,
@@ -139,7 +139,7 @@ const MOUSE: [(&str, &str); 8] = [
     ("W A S D Q E", "move; with Shift faster"),
     (
         "click",
-        "of that point, what the graph shows: the cones of a pixel, where cones are traced",
+        "the graph's view of that point, for example the cones of its pixel",
     ),
 ];
 
@@ -157,7 +157,7 @@ const BUTTONS: [(&str, &str); 5] = [
     ("Inspect", "any texture of the graph, any slice of a volume"),
 ];
 
-/// Actions whose keys were pressed; keys without Ctrl do nothing while text is typed.
+/// Actions of pressed keys; keys without Ctrl do nothing while text is typed.
 pub fn pressed(ui: &Ui, typing: bool) -> Vec<Action> {
     let allowed = |shortcut: &KeyboardShortcut| {
         !typing
@@ -179,7 +179,7 @@ pub fn pressed(ui: &Ui, typing: bool) -> Vec<Action> {
 impl Workbench {
     /// The window of keys, over the picture and not over the parameters.
     pub(super) fn help_window(&mut self, ui: &mut Ui, place: egui::Rect) {
-        let mut open = self.help;
+        let mut open = self.layout.help;
         let window = egui::Window::new("Help")
             .open(&mut open)
             .collapsible(false)
@@ -198,13 +198,13 @@ impl Workbench {
                 }
             });
             ui.separator();
-            let docs = self.root.join("docs");
+            let docs = self.setup.home.root.join("docs");
             let pages = "workbench.md: this window; method.md: the method and its parameters; graph.md: graphs; tour.md: a tour";
             ui.horizontal_wrapped(|ui| {
                 ui.label(format!("More in {}.", docs.display())).on_hover_text(pages);
                 ui.weak(pages);
             });
         });
-        self.help = open;
+        self.layout.help = open;
     }
 }

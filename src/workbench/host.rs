@@ -1,4 +1,4 @@
-//! What a host (a window, a screenshot) asks: pixels to show, and the events that scripts read.
+//! The interface to a host (a window, a screenshot): pixels to show, and events for scripts.
 
 use crate::workbench::{NewPixels, Workbench, events};
 use serde_json::json;
@@ -12,7 +12,7 @@ impl Workbench {
 
     /// Revision of the files that the shown picture of A was made from.
     pub fn shown_revision(&self) -> u64 {
-        self.shown_revision
+        self.reload.shown
     }
 
     /// Number of A's last picture, and when it was finished.
@@ -30,17 +30,20 @@ impl Workbench {
             .as_ref()
             .filter(|_| self.pixels.iter().any(|p| p.picture == 0))
         {
-            self.shown_revision = picture.revision;
+            self.reload.shown = picture.revision;
         }
         if !self.pixels.is_empty() {
-            if self.events.is_none() {
+            if self.setup.events.is_none() {
                 self.pixels.clear();
                 return;
             }
             let list: Vec<usize> = self.pixels.iter().map(|p| p.picture).collect();
             let print = |p: &NewPixels| p.bytes.as_ref().map(|b| events::fingerprint(b));
             let prints: Vec<Option<String>> = self.pixels.iter().map(print).collect();
-            let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
+            let since = self
+                .reload
+                .changed_at
+                .map(|t| t.elapsed().as_secs_f64() * 1e3);
             let request = self.sides[0].picture.as_ref().map_or(0, |p| p.request);
             self.event(
                 "painted",
@@ -52,7 +55,7 @@ impl Workbench {
 
     /// Logs where the widgets are, for scripts; `true` if there is more to log.
     pub fn describe(&mut self, update: Option<&egui::accesskit::TreeUpdate>, scale: f32) -> bool {
-        self.events.as_mut().is_some_and(|e| {
+        self.setup.events.as_mut().is_some_and(|e| {
             e.place(self.view.place, scale);
             e.widgets(update, scale)
         })
@@ -60,6 +63,6 @@ impl Workbench {
 
     /// Whether the widgets are to be described.
     pub fn is_described(&self) -> bool {
-        self.events.is_some()
+        self.setup.events.is_some()
     }
 }

@@ -5,15 +5,42 @@ use crate::workbench::picture::zoom;
 use crate::workbench::tabs::TABS;
 use crate::workbench::{Workbench, help, panel, watch};
 use egui::{TextureId, Ui};
+use std::time::Instant;
+
+/// What of the window is shown, and how large.
+pub(super) struct Layout {
+    pub help: bool,
+    /// Whether the panels at the sides are hidden.
+    pub hidden: bool,
+    pub full_screen: bool,
+    /// The area of the picture [pixels of the screen].
+    pub area: [u32; 2],
+    /// Size of pictures that do not follow the area.
+    pub fixed_size: Option<(u32, u32)>,
+    pub resize_since: Option<Instant>,
+}
+
+impl Layout {
+    pub fn new(fixed_size: Option<(u32, u32)>) -> Layout {
+        Layout {
+            help: false,
+            hidden: false,
+            full_screen: false,
+            area: [0, 0],
+            fixed_size,
+            resize_since: None,
+        }
+    }
+}
 
 impl Workbench {
     pub(super) fn parameters(&mut self, ui: &mut Ui) {
-        // A panel that shrinks to what is in it stays small.
+        // A panel that shrinks to its content stays small.
         ui.take_available_width();
         if self.desired.sides[1].is_some() {
             ui.horizontal(|ui| {
-                ui.selectable_value(&mut self.panel_side, 0, "A");
-                ui.selectable_value(&mut self.panel_side, 1, "B");
+                ui.selectable_value(&mut self.panel.side, 0, "A");
+                ui.selectable_value(&mut self.panel.side, 1, "B");
                 if ui.small_button("A to B").clicked() {
                     self.desired.sides[1] = self.desired.sides[0].clone();
                 }
@@ -25,9 +52,9 @@ impl Workbench {
                 }
             });
         } else {
-            self.panel_side = 0;
+            self.panel.side = 0;
         }
-        let number = self.panel_side;
+        let number = self.panel.side;
         let info = self.sides[number]
             .info
             .clone()
@@ -56,17 +83,20 @@ impl Workbench {
             ui.spacing_mut().button_padding.x = 3.0;
             for tab in TABS {
                 if ui
-                    .selectable_label(self.tab.is(tab), egui::RichText::new(tab.title).size(12.0))
+                    .selectable_label(
+                        self.tabs.open.is(tab),
+                        egui::RichText::new(tab.title).size(12.0),
+                    )
                     .clicked()
                 {
-                    self.tab = tab;
+                    self.tabs.open = tab;
                 }
             }
         });
         ui.separator();
         // What no tab shows need not be made.
         (self.desired.inspect, self.desired.table) = (None, None);
-        (self.tab.show)(self, ui, textures);
+        (self.tabs.open.show)(self, ui, textures);
     }
 
     pub(super) fn shortcuts(&mut self, ui: &Ui) {
@@ -74,12 +104,12 @@ impl Workbench {
         for action in help::pressed(ui, typing) {
             match action {
                 help::Action::Find => {
-                    self.hidden = false;
+                    self.layout.hidden = false;
                     panel::Panel::find(ui);
                 }
-                help::Action::Open => self.models.ask(),
+                help::Action::Open => self.scene.models.ask(),
                 help::Action::Reload => self.files_changed(&watch::Changed::all()),
-                help::Action::Help => self.help = !self.help,
+                help::Action::Help => self.layout.help = !self.layout.help,
                 help::Action::Undo => self.go(true),
                 help::Action::Redo => self.go(false),
                 help::Action::Play => self.desired.clock.playing = !self.desired.clock.playing,
@@ -95,11 +125,13 @@ impl Workbench {
                 help::Action::Unpoint => self.point_at(None),
                 help::Action::Save => self.save(false),
                 help::Action::Capture => self.capture(),
-                help::Action::Panels => self.hidden = !self.hidden,
+                help::Action::Panels => self.layout.hidden = !self.layout.hidden,
                 help::Action::FullScreen => {
-                    self.full_screen = !self.full_screen;
+                    self.layout.full_screen = !self.layout.full_screen;
                     ui.ctx()
-                        .send_viewport_cmd(egui::ViewportCommand::Fullscreen(self.full_screen));
+                        .send_viewport_cmd(egui::ViewportCommand::Fullscreen(
+                            self.layout.full_screen,
+                        ));
                 }
                 help::Action::WholePicture => self.view.zoom = zoom::Zoom::default(),
                 help::Action::RenderDoc => self.engine.order(Order::RenderDoc),
@@ -108,8 +140,8 @@ impl Workbench {
     }
 }
 
-/// A press of the mouse elsewhere takes the keys away from a text field: a drag on a slider would leave them there, and
-/// with them what Ctrl Z means.
+/// A press of the mouse elsewhere takes the keys away from a text field: a drag on a slider would
+/// leave them there, and with them what Ctrl Z means.
 pub(super) fn release_focus(ui: &Ui) {
     let Some(focused) = ui.ctx().memory(egui::Memory::focused) else {
         return;

@@ -1,24 +1,33 @@
-//! Errors with the place and the source line, over the picture's foot; they go when they are mended.
+//! Errors with the place and the source line, over the picture's foot; they go when they are
+//! mended.
 
 use crate::diagnostics::{Diagnostic, Severity};
 use crate::workbench::engine::Order;
 use crate::workbench::{Workbench, editor};
 use egui::{Align2, Color32, Rect, RichText, Ui};
 
-/// What the words of an engine end with whose device is to be opened anew.
+/// The end of a message after which the device has to be restarted.
 const RESTART: &str = "Restart device";
+
+/// Messages that belong to no file.
+pub(super) struct Messages {
+    /// The last one of the status line.
+    pub status: String,
+    pub trouble: Option<String>,
+}
 
 impl Workbench {
     fn has_messages(&self) -> bool {
-        self.trouble.is_some()
-            || self.warned
+        self.messages.trouble.is_some()
+            || self.scene.warned
             || self
                 .sides
                 .iter()
                 .any(|s| !s.errors.is_empty() || !s.checks.is_empty())
     }
 
-    /// The messages over the lower edge of `place`: the picture under them keeps its place and size.
+    /// The messages over the lower edge of `place`: the picture under them keeps its place and
+    /// size.
     pub(super) fn messages(&mut self, ui: &mut Ui, place: Rect) {
         if !self.has_messages() {
             return;
@@ -72,12 +81,15 @@ impl Workbench {
             let file = if file.is_absolute() || file.exists() {
                 file
             } else {
-                self.root.join(file)
+                self.setup.home.root.join(file)
             };
-            self.status = editor::open(&file, line);
-            self.event("editor", serde_json::json!({ "text": self.status }));
+            self.messages.status = editor::open(&file, line);
+            self.event(
+                "editor",
+                serde_json::json!({ "text": self.messages.status }),
+            );
         }
-        if self.warned {
+        if self.scene.warned {
             ui.horizontal_wrapped(|ui| {
                 let warnings = self.scene_warnings();
                 let first = warnings.first().cloned().unwrap_or_default();
@@ -86,13 +98,13 @@ impl Workbench {
                     n => format!(" (and {} more on the Scene tab)", n - 1),
                 };
                 ui.colored_label(AMBER, format!("scene: {first}{more}"));
-                self.warned = !ui
+                self.scene.warned = !ui
                     .small_button("dismiss")
                     .on_hover_text("It stays on the Scene tab")
                     .clicked();
             });
         }
-        let Some(trouble) = self.trouble.clone() else {
+        let Some(trouble) = self.messages.trouble.clone() else {
             return;
         };
         ui.horizontal_wrapped(|ui| {
@@ -103,7 +115,7 @@ impl Workbench {
                 done = true;
             }
             if done {
-                self.trouble = None;
+                self.messages.trouble = None;
             }
         });
     }

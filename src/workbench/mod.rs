@@ -1,7 +1,9 @@
-//! The workbench: an engine that renders in the background, and the interface that says what it renders.
+//! The workbench: an engine that renders in the background, and the interface that controls it.
 //!
-//! Nothing here knows a window system but the [`hosts`] of the interface: a window, and offscreen screenshots.
+//! Nothing here knows a window system but the [`hosts`] of the interface: a window, and offscreen
+//! screenshots.
 
+mod background;
 mod bar;
 pub mod desired;
 mod editor;
@@ -23,11 +25,11 @@ mod watch;
 
 use crate::diagnostics::Diagnostic;
 use crate::experiment::Experiment;
-use crate::graph::run::Redo;
+use crate::graph::run::Execution;
 use crate::lab::{LabError, Workspace};
 use crate::scene::Scene;
 use crate::vulkan::{Buffer, DeviceId, GpuOptions, PixelSource, Pixels};
-use crossbeam_channel::{Receiver, Sender, unbounded};
+use background::Wake;
 use desired::request::RenderRequest;
 use desired::{edit, history, request, sides};
 use egui::{TextureId, Ui, Vec2};
@@ -36,12 +38,12 @@ use engine::report::{DeviceReport, GraphInfo, PictureReport};
 use events::Events;
 use opening::{picture_of, side_of};
 use panel::effects;
-use picture::compare::{Map, Mode};
-use picture::view;
+use picture::compare::Mode;
+use picture::{difference, view};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use tabs::{Tab, bookmarks, chart, gallery, inspector, nodes, paths, surroundings, tables, times};
+use tabs::tables;
 
 /// Pictures that hosts keep for the interface: A, B, the comparison, the inspector.
 pub const PICTURES: usize = 4;
@@ -79,12 +81,6 @@ impl NewPixels {
     }
 }
 
-/// The pictures of a comparison: mode, gain, pixels of A, pixels of B.
-type ComparisonOf = (Mode, u32, Arc<Vec<u8>>, Arc<Vec<u8>>);
-
-/// The result of a comparison: mode and map; no map where the pictures cannot be compared.
-type Compared = (Mode, Option<Map>);
-
 /// Graph, errors and picture of side A or B.
 #[derive(Default)]
 struct Side {
@@ -118,87 +114,101 @@ pub struct Options {
     /// Picture size; that of the viewport when absent.
     pub size: Option<(u32, u32)>,
     /// What frames do at first.
-    pub redo: Redo,
+    pub execution: Execution,
     /// File for the log of events.
     pub events: Option<PathBuf>,
 }
 
 /// The workbench.
 pub struct Workbench {
+    setup: Setup,
     engine: Engine,
     watch: watch::Watch,
     desired: RenderRequest,
-    /// The request that the engine was sent last, and how many it was sent.
-    sent: RenderRequest,
-    sent_number: u64,
-    sent_at: Instant,
-    name: String,
+    sent: Sent,
     sides: [Side; 2],
     alone: sides::Alone,
-    scene: Option<Arc<Scene>>,
-    /// Name of the loaded scene, its sky's picture, and how it was seen before another was asked for.
-    loaded_scene: Option<(String, String)>,
-    before_loading: Option<history::State>,
-    /// Whether the scene that was asked for last could not be loaded.
-    no_scene: bool,
-    /// What is to be known about the scene, until it is dismissed.
-    warned: bool,
-    /// Diagonal of the scene's bounds, m; asking for the bounds walks through all vertices.
-    diagonal: f32,
-    experiment: Option<Experiment>,
-    loading: Option<(String, f32)>,
+    scene: OpenScene,
+    experiment: OpenExperiment,
     device: Option<DeviceReport>,
-    history: history::History,
-    /// Whether undo goes to the scene that is loaded: its view and light are those of the desired state.
-    returning: bool,
+    undo: Undo,
     panel: panel::Panel,
-    panel_side: usize,
     effects: effects::Effects,
     view: view::View,
-    tab: Tab,
-    times: times::Times,
-    chart: chart::Chart,
-    nodes: nodes::Nodes,
-    inspector: inspector::Inspector,
-    tables: tables::Tables,
-    paths: paths::Paths,
-    bookmarks: bookmarks::Bookmarks,
-    models: models::Models,
-    gallery: gallery::Gallery,
-    help: bool,
-    /// Whether the panels at the sides are hidden, and the window fills the screen.
-    hidden: bool,
-    full_screen: bool,
-    /// The experiment's file as it was written last from here: its change is no news.
-    written: Option<PathBuf>,
-    /// The last message of the status line.
-    status: String,
-    trouble: Option<String>,
+    tabs: tabs::Tabs,
+    layout: layout::Layout,
+    messages: messages::Messages,
+    comparison: difference::Comparison,
+    /// New pixels for the host.
     pixels: Vec<NewPixels>,
-    comparison: Option<(Mode, Map)>,
-    comparing: bool,
-    /// What was compared last: mode, gain, A, B.
-    comparison_of: Option<ComparisonOf>,
-    compared: (Sender<Compared>, Receiver<Compared>),
-    /// The area of the picture, in pixels of the screen.
-    area: [u32; 2],
-    fixed_size: Option<(u32, u32)>,
-    resize_since: Option<Instant>,
-    events: Option<Events>,
-    changed_at: Option<Instant>,
-    shown_revision: u64,
-    wake: Arc<dyn Fn() + Send + Sync>,
-    root: PathBuf,
+    reload: Reload,
+}
+
+/// Folders, device and callbacks of the workbench.
+struct Setup {
     home: Workspace,
     gpu: GpuOptions,
+    /// Called from other threads when there is something new to show.
+    wake: Wake,
+    events: Option<Events>,
+}
+
+/// The last request to the engine.
+struct Sent {
+    request: RenderRequest,
+    /// Number of requests.
+    number: u64,
+    at: Instant,
+}
+
+/// The loaded scene, and the loading of another.
+struct OpenScene {
+    loaded: Option<Arc<Scene>>,
+    /// Name of the loaded scene, and file of its sky's picture.
+    source: Option<(String, String)>,
+    /// The state before another scene was requested.
+    before: Option<history::State>,
+    /// Whether no scene is loaded because loading failed.
+    missing: bool,
+    /// Whether its warnings are shown, until they are dismissed.
+    warned: bool,
+    /// Diagonal of its bounds [m].
+    diagonal: f32,
+    /// Name of the scene being loaded, and the completed fraction.
+    loading: Option<(String, f32)>,
+    models: models::Models,
+}
+
+/// The experiment that is edited.
+struct OpenExperiment {
+    name: String,
+    /// Camera and lights, until its scene is loaded.
+    file: Option<Experiment>,
+    /// Its file as last saved from here. That change needs no reload.
+    written: Option<PathBuf>,
+}
+
+#[derive(Default)]
+struct Undo {
+    history: history::History,
+    /// Whether undo loads a scene. Its view and light are then those of the desired state.
+    returning: bool,
+}
+
+/// When files of graphs or shaders changed, for the log of events.
+#[derive(Default)]
+struct Reload {
+    changed_at: Option<Instant>,
+    shown: u64,
 }
 
 impl Workbench {
-    /// Opens the workbench; `wake` is called from other threads when there is something new to show.
+    /// Opens the workbench; `wake` is called from other threads when there is something new to
+    /// show.
     ///
     /// # Errors
     /// An experiment that cannot be read, a log that cannot be written.
-    pub fn new(options: Options, wake: Arc<dyn Fn() + Send + Sync>) -> Result<Workbench, LabError> {
+    pub fn new(options: Options, wake: Wake) -> Result<Workbench, LabError> {
         let experiment = Experiment::read(&options.experiment).map_err(LabError::Input)?;
         let events = options.events.as_deref().map(Events::new).transpose();
         let events = events
@@ -212,7 +222,7 @@ impl Workbench {
             scene: options.scene.unwrap_or_else(|| experiment.scene.clone()),
             environment: picture_of(&experiment),
             size: options.size.unwrap_or((0, 0)),
-            redo: options.redo,
+            execution: options.execution,
             clock: request::Clock {
                 at: experiment.time,
                 jumps: 1,
@@ -226,59 +236,49 @@ impl Workbench {
         Ok(Workbench {
             engine,
             watch,
-            sent: RenderRequest::default(),
-            sent_number: 0,
-            sent_at: Instant::now(),
+            sent: Sent {
+                request: RenderRequest::default(),
+                number: 0,
+                at: Instant::now(),
+            },
             desired,
-            name: experiment.name.clone(),
             sides: Default::default(),
             alone: None,
-            scene: None,
-            loaded_scene: None,
-            before_loading: None,
-            no_scene: false,
-            warned: false,
-            diagonal: 1.0,
-            experiment: Some(experiment),
-            loading: None,
+            scene: OpenScene {
+                loaded: None,
+                source: None,
+                before: None,
+                missing: false,
+                warned: false,
+                diagonal: 1.0,
+                loading: None,
+                models: models::Models::new(&root),
+            },
+            experiment: OpenExperiment {
+                name: experiment.name.clone(),
+                file: Some(experiment),
+                written: None,
+            },
             device: None,
-            history: history::History::default(),
-            returning: false,
+            undo: Undo::default(),
             panel: panel::Panel::default(),
-            panel_side: 0,
             effects: effects::Effects::default(),
             view: view::View::default(),
-            tab: surroundings::TAB,
-            times: times::Times::default(),
-            chart: chart::Chart::default(),
-            nodes: nodes::Nodes::default(),
-            inspector: inspector::Inspector::default(),
-            tables: tables::Tables::default(),
-            paths: paths::Paths::default(),
-            bookmarks: bookmarks::Bookmarks::default(),
-            models: models::Models::new(&root),
-            gallery: gallery::Gallery::default(),
-            help: false,
-            hidden: false,
-            full_screen: false,
-            written: None,
-            status: String::new(),
-            trouble,
+            tabs: tabs::Tabs::default(),
+            layout: layout::Layout::new(options.size),
+            messages: messages::Messages {
+                status: String::new(),
+                trouble,
+            },
+            comparison: difference::Comparison::default(),
             pixels: Vec::new(),
-            comparison: None,
-            comparing: false,
-            comparison_of: None,
-            compared: unbounded(),
-            area: [0, 0],
-            fixed_size: options.size,
-            resize_since: None,
-            events,
-            changed_at: None,
-            shown_revision: 0,
-            wake,
-            root,
-            home,
-            gpu,
+            reload: Reload::default(),
+            setup: Setup {
+                home,
+                gpu,
+                wake,
+                events,
+            },
         })
     }
 
@@ -288,7 +288,7 @@ impl Workbench {
     }
 
     fn event(&mut self, name: &str, fields: serde_json::Value) {
-        if let Some(events) = &mut self.events {
+        if let Some(events) = &mut self.setup.events {
             events.write(name, fields);
         }
     }
@@ -299,9 +299,9 @@ impl Workbench {
     }
 
     fn waiting_text(&self) -> String {
-        match &self.loading {
+        match &self.scene.loading {
             Some((what, part)) => format!("loading {what}: {:.0} %", 100.0 * part),
-            None if self.no_scene => "no scene".into(),
+            None if self.scene.missing => "no scene".into(),
             None if self.device.is_none() => "opening the device".into(),
             None => "building the passes".into(),
         }
@@ -330,27 +330,28 @@ impl Workbench {
         }
     }
 
-    /// Opens the tables, when what was clicked on fills one.
+    /// Opens the tables if a click fills one.
     fn show_tables(&mut self) {
         let fills = |o: &Arc<GraphInfo>| o.graph.pointer.is_some() && !o.graph.tables.is_empty();
         if self.sides[0].info.as_ref().is_some_and(fills) {
-            self.tab = tables::TAB;
+            self.tabs.open = tables::TAB;
         }
     }
 
     /// Sends the desired state to the engine, if it changed.
     fn send_request(&mut self) {
-        if self.desired != self.sent {
-            self.sent = self.desired.clone();
-            self.sent_number += 1;
-            self.sent_at = Instant::now();
-            self.engine.request(self.sent_number, self.sent.clone());
+        if self.desired != self.sent.request {
+            self.sent.request = self.desired.clone();
+            self.sent.number += 1;
+            self.sent.at = Instant::now();
+            self.engine
+                .request(self.sent.number, self.sent.request.clone());
         }
     }
 
     /// What went wrong last, if anything.
     pub fn trouble(&self) -> Option<&str> {
-        self.trouble.as_deref()
+        self.messages.trouble.as_deref()
     }
 
     /// Whether everything requested is on screen.
@@ -358,14 +359,14 @@ impl Workbench {
         let shown = |i: usize| {
             self.desired.sides[i].is_none()
                 || self.sides[i].picture.as_ref().is_some_and(|p| {
-                    let known = p.request >= self.sent_number && self.sides[i].info.is_some();
+                    let known = p.request >= self.sent.number && self.sides[i].info.is_some();
                     !p.preview && known
                 })
         };
         shown(0)
             && shown(1)
-            && self.loading.is_none()
-            && !self.comparing
+            && self.scene.loading.is_none()
+            && !self.comparison.work.is_working()
             && !self.chart_awaits()
             && !self.effects.awaits()
     }
@@ -376,7 +377,7 @@ impl Workbench {
         self.shortcuts(ui);
         egui::Panel::top("bar").show(ui, |ui| self.bar(ui));
         egui::Panel::bottom("status").show(ui, |ui| self.status_line(ui));
-        if !self.hidden {
+        if !self.layout.hidden {
             egui::Panel::left("parameters")
                 .default_size(340.0)
                 .size_range(180.0..=640.0)
@@ -386,14 +387,14 @@ impl Workbench {
                 .size_range(180.0..=760.0)
                 .show(ui, |ui| self.right(ui, textures));
         }
-        let middle = self.tab.middle;
+        let middle = self.tabs.open.middle;
         let central = egui::CentralPanel::no_frame().show(ui, |ui| middle(self, ui, textures));
         let place = central.response.rect;
         self.messages(ui, place);
-        if self.help {
+        if self.layout.help {
             self.help_window(ui, place);
         }
-        if let Some(path) = self.models.picked(ui) {
+        if let Some(path) = self.scene.models.picked(ui) {
             self.dropped(&path);
         }
         self.fit_size(ui);
@@ -401,13 +402,13 @@ impl Workbench {
         self.remember(held);
         if self.desired.sides[1].is_none() {
             self.sides[1] = Side::default();
-            self.comparison_of = None;
+            self.comparison.of = None;
         }
         self.compare();
         // Comparisons are made, and events say what pictures hold, in main memory.
         let maps = matches!(self.view.mode, Mode::Difference | Mode::Perceived)
             && self.desired.sides[1].is_some();
-        self.desired.bytes = maps || self.events.is_some();
+        self.desired.bytes = maps || self.setup.events.is_some();
         self.find_effects(ui);
         self.send_request();
         self.request_errors(ui);
@@ -416,18 +417,19 @@ impl Workbench {
     /// The picture has the size of the viewport, once that has stood still for a moment.
     fn fit_size(&mut self, ui: &Ui) {
         let size = self
+            .layout
             .fixed_size
-            .unwrap_or((self.area[0].max(1), self.area[1].max(1)));
+            .unwrap_or((self.layout.area[0].max(1), self.layout.area[1].max(1)));
         if size == self.desired.size || size.0 < 2 || size.1 < 2 {
-            self.resize_since = None;
+            self.layout.resize_since = None;
             return;
         }
         let first = self.desired.size == (0, 0);
-        let since = *self.resize_since.get_or_insert_with(Instant::now);
+        let since = *self.layout.resize_since.get_or_insert_with(Instant::now);
         let quiet = Duration::from_millis(120);
         if first || since.elapsed() >= quiet {
             self.desired.size = size;
-            self.resize_since = None;
+            self.layout.resize_since = None;
         } else {
             ui.ctx().request_repaint_after(quiet);
         }
@@ -435,7 +437,7 @@ impl Workbench {
 
     /// Ends: waits a little for the frame in work. Returns the device's validation messages.
     pub fn close(self) -> Vec<String> {
-        let mut messages = self.chart.close(Duration::from_secs(5));
+        let mut messages = self.tabs.chart.close(Duration::from_secs(5));
         messages.extend(self.engine.stop(Duration::from_secs(20)));
         messages
     }

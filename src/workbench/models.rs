@@ -1,4 +1,5 @@
-//! Files that the window opens: the models in the folders of CONELAB_SCENES, and any other by a dialog.
+//! Files that the window opens: the models in the folders of CONELAB_SCENES, and any other by a
+//! dialog.
 
 use egui::Ui;
 use egui_file_dialog::{DialogState, FileDialog};

@@ -1,4 +1,4 @@
-//! What is opened: experiments, scenes, files that were edited or dropped on the window.
+//! Opening: experiments, scenes, and files that were edited or dropped on the window.
 
 use crate::experiment::Experiment;
 use crate::lab::viewpoint_of;
@@ -13,7 +13,7 @@ impl Workbench {
     pub(super) fn files_changed(&mut self, changed: &watch::Changed) {
         if changed.method {
             self.desired.revision += 1;
-            self.changed_at = Some(Instant::now());
+            self.reload.changed_at = Some(Instant::now());
             self.event("changed", json!({ "revision": self.desired.revision }));
         }
         if changed.scene {
@@ -29,11 +29,12 @@ impl Workbench {
     fn experiment_changed(&mut self, path: &Path) {
         if path
             .file_stem()
-            .is_none_or(|s| s.to_string_lossy() != self.name.as_str())
+            .is_none_or(|s| s.to_string_lossy() != self.experiment.name.as_str())
         {
             return;
         }
         let own = self
+            .experiment
             .written
             .take()
             .is_some_and(|w| w.file_name() == path.file_name());
@@ -51,7 +52,7 @@ impl Workbench {
                     || picture_of(&experiment) != self.desired.environment
                 {
                     self.open(&experiment);
-                    self.status = format!("read {} again", path.display());
+                    self.messages.status = format!("read {} again", path.display());
                 }
             }
             Err(errors) => self.sides[0].errors = errors,
@@ -61,33 +62,33 @@ impl Workbench {
     /// Shows an experiment in side A.
     pub(super) fn open(&mut self, experiment: &Experiment) {
         let before = self.missing_scene().is_none().then(|| self.state());
-        self.history.opens();
-        self.name.clone_from(&experiment.name);
+        self.undo.history.opens();
+        self.experiment.name.clone_from(&experiment.name);
         self.desired.sides[0] = Some(side_of(experiment));
         if self.desired.scene == experiment.scene
             && self.desired.environment == picture_of(experiment)
         {
-            if let Some(scene) = &self.scene {
+            if let Some(scene) = &self.scene.loaded {
                 self.desired.camera = viewpoint_of(experiment, scene).ok().map(|v| v.camera);
                 self.desired.lights = save::lights(experiment, scene).unwrap_or_default();
             }
         } else {
             self.open_scene(&experiment.scene);
-            self.before_loading = before.or(self.before_loading.take());
+            self.scene.before = before.or(self.scene.before.take());
             self.desired.environment = picture_of(experiment);
             self.view.picture.clone_from(&self.desired.environment);
         }
-        self.experiment = Some(experiment.clone());
+        self.experiment.file = Some(experiment.clone());
         self.desired.clock.at = experiment.time;
         self.desired.clock.jumps += 1;
     }
 
-    /// The scene that is asked for, if it is another than the loaded one, with the words that it is not there.
+    /// The requested scene, if it is not the loaded one, with a note that it is missing.
     pub(super) fn missing_scene(&self) -> Option<String> {
         let asked = (&self.desired.scene, &self.desired.environment);
-        match &self.loaded_scene {
+        match &self.scene.source {
             Some(loaded) if asked == (&loaded.0, &loaded.1) => None,
-            _ if self.no_scene => Some(format!(
+            _ if self.scene.missing => Some(format!(
                 "scene '{}' could not be loaded; choose another one",
                 asked.0
             )),
@@ -95,16 +96,17 @@ impl Workbench {
         }
     }
 
-    /// The length of [`Workbench::scene_warnings`], without their texts: every frame of the window shows it.
+    /// The length of [`Workbench::scene_warnings`], without their texts: every frame of the window
+    /// shows it.
     pub(super) fn scene_warning_count(&self) -> usize {
-        self.scene.as_ref().map_or(0, |s| {
+        self.scene.loaded.as_ref().map_or(0, |s| {
             s.warnings.len() + usize::from(s.triangle_count() == 0)
         })
     }
 
-    /// What is to be known about the loaded scene.
+    /// Warnings about the loaded scene.
     pub(super) fn scene_warnings(&self) -> Vec<String> {
-        let Some(scene) = &self.scene else {
+        let Some(scene) = &self.scene.loaded else {
             return Vec::new();
         };
         let empty = (scene.triangle_count() == 0)
@@ -113,15 +115,15 @@ impl Workbench {
     }
 
     pub(super) fn open_scene(&mut self, spec: &str) {
-        self.no_scene = false;
+        self.scene.missing = false;
         if self.missing_scene().is_none() {
-            self.before_loading = Some(self.state());
+            self.scene.before = Some(self.state());
         }
         self.desired.scene = spec.to_string();
         self.desired.environment.clear();
         self.view.picture.clear();
         self.desired.lights = None;
-        self.returning = false;
+        self.undo.returning = false;
     }
 
     /// A file was dropped on the window.
@@ -134,7 +136,7 @@ impl Workbench {
                 self.open(&experiment);
             }
             _ => {
-                self.experiment = None;
+                self.experiment.file = None;
                 self.open_scene(&spec);
             }
         }
@@ -145,13 +147,13 @@ impl Workbench {
     pub(super) fn bare(&self) -> Experiment {
         let side = self.desired.sides[0].clone().unwrap_or_default();
         Experiment {
-            name: self.name.clone(),
+            name: self.experiment.name.clone(),
             ..self.desired.experiment(&side)
         }
     }
 }
 
-/// A side with its parameters in order: what a file says does not depend on theirs.
+/// A side with its parameters in order, so that saved files do not depend on the order of edits.
 fn sorted(mut side: SideRequest) -> SideRequest {
     side.params.sort();
     side

@@ -1,4 +1,4 @@
-//! What is waited for, in words: the work of the engine that lasts longer than a moment.
+//! The engine's work in words, if it lasts longer than a moment.
 
 use crate::workbench::Workbench;
 use std::time::{Duration, Instant};
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 const MOMENT: Duration = Duration::from_millis(500);
 
 impl Workbench {
-    /// What is waited for, and for how long. Loading tells of itself.
+    /// The engine's work, and its duration. Loading has its own message.
     pub(super) fn pending(&self, context: &egui::Context) -> Option<String> {
         let (what, since) = self.in_hand()?;
         let lasts = since.elapsed();
@@ -22,7 +22,7 @@ impl Workbench {
     fn in_hand(&self) -> Option<(String, Instant)> {
         self.device
             .as_ref()
-            .filter(|_| self.loading.is_none() && self.scene.is_some())?;
+            .filter(|_| self.scene.loading.is_none() && self.scene.loaded.is_some())?;
         let both = self.desired.sides[1].is_some();
         let of = |side: usize| {
             self.desired.sides[side]
@@ -35,19 +35,21 @@ impl Workbench {
             };
             let picture = self.sides[side].picture.as_ref();
             // While pictures come, none of them is long in the making.
-            let since = picture.map_or(self.sent_at, |p| p.finished.max(self.sent_at));
+            let since = picture.map_or(self.sent.at, |p| p.finished.max(self.sent.at));
             match (&self.sides[side].info, picture) {
-                (Some(_), Some(p)) if !p.preview && p.request >= self.sent_number => None,
+                (Some(_), Some(p)) if !p.preview && p.request >= self.sent.number => None,
                 (None, _) => Some((format!("building the passes of {name}"), since)),
                 (_, Some(p)) if p.preview => {
-                    Some((format!("building the passes of {name}"), self.sent_at))
+                    Some((format!("building the passes of {name}"), self.sent.at))
                 }
                 _ => Some((format!("working on {name}"), since)),
             }
         };
         let comparing = || {
-            self.comparing
-                .then(|| ("comparing A and B".into(), self.sent_at))
+            self.comparison
+                .work
+                .is_working()
+                .then(|| ("comparing A and B".into(), self.sent.at))
         };
         // Light that gathers over frames goes on after the first picture.
         let pictures = || self.sides.iter().filter_map(|s| s.picture.as_ref());

@@ -17,14 +17,14 @@ use std::time::Duration;
 const LOOK: Duration = Duration::from_secs(1);
 
 impl Workbench {
-    /// Takes in the messages of other threads. Returns how soon to poll again, if a message is about to come.
+    /// Takes in the messages of other threads. Returns how soon to poll again, if a message is
+    /// about to come.
     pub fn poll_events(&mut self) -> Option<Duration> {
         while let Ok(report) = self.engine.reports.try_recv() {
             self.report(report);
         }
-        while let Ok((mode, map)) = self.compared.1.try_recv() {
-            self.comparing = false;
-            if let Some(map) = map {
+        while let Some((mode, map)) = self.comparison.work.take() {
+            if let Ok(Some(map)) = map {
                 self.show(NewPixels {
                     picture: COMPARISON,
                     size: map.size,
@@ -37,13 +37,13 @@ impl Workbench {
                     "compared",
                     json!({ "mode": name, "mean": mean, "max": max, "differing": differing }),
                 );
-                self.comparison = Some((mode, map));
+                self.comparison.shown = Some((mode, map));
             }
         }
         if let Some(why) = self.engine.failure() {
             self.replace_engine(&why);
         }
-        if let Some(pixels) = self.inspector.take(&self.wake) {
+        if let Some(pixels) = self.tabs.inspector.take(&self.setup.wake) {
             self.show(pixels);
         }
         self.poll_chart();
@@ -55,7 +55,7 @@ impl Workbench {
             }
             Err(wait) => wait,
         };
-        // An engine that stands still wakes nobody.
+        // An idle engine needs no polling.
         if self.engine.works() {
             Some(wait.map_or(LOOK, |w| w.min(LOOK)))
         } else {
@@ -65,19 +65,19 @@ impl Workbench {
 
     /// Leaves an engine that is no longer there to itself, and starts another.
     fn replace_engine(&mut self, why: &str) {
-        let failed = (self.sent_number, self.sent.clone());
+        let failed = (self.sent.number, self.sent.request.clone());
         self.engine = Engine::replace(
-            self.home.clone(),
-            self.gpu.clone(),
-            self.wake.clone(),
+            self.setup.home.clone(),
+            self.setup.gpu.clone(),
+            self.setup.wake.clone(),
             failed,
         );
-        (self.loading, self.device) = (None, None);
+        (self.scene.loading, self.device) = (None, None);
         let text = format!(
             "{why}. Another engine was started: change a shader or a value, or press Restart device"
         );
         self.event("engine replaced", json!({ "text": text }));
-        self.trouble = Some(text);
+        self.messages.trouble = Some(text);
     }
 
     fn report(&mut self, report: Report) {
@@ -88,8 +88,8 @@ impl Workbench {
                     json!({ "name": device.name, "driver": device.driver }),
                 );
                 self.device = Some(device);
-                self.chart.restarted();
-                self.trouble = None;
+                self.tabs.chart.restarted();
+                self.messages.trouble = None;
             }
             Report::Built {
                 side,
@@ -104,14 +104,14 @@ impl Workbench {
                     built,
                     resized,
                 } = change;
-                self.status =
+                self.messages.status =
                     format!("kept {kept}, rebuilt {built}, resized {resized}, {ms:.0} ms");
                 self.event(
                     "built",
                     json!({ "side": side, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
                         "revision": revision, "objects": objects }),
                 );
-                self.times.built(side, &info);
+                self.tabs.times.built(side, &info);
                 self.mended(side);
                 self.sides[side].info = Some(info);
             }
@@ -130,7 +130,7 @@ impl Workbench {
             Report::Set { side, .. } => {
                 self.mended(side);
             }
-            Report::Restarted => self.times.restarted(),
+            Report::Restarted => self.tabs.times.restarted(),
             Report::Picture(picture) => self.picture_came(picture),
             Report::Pixels { side, frame, bytes } => {
                 let Some(picture) = self.sides[side]
@@ -152,17 +152,17 @@ impl Workbench {
                     });
                 }
             }
-            Report::Loading(what, part) => self.loading = Some((what, part)),
+            Report::Loading(what, part) => self.scene.loading = Some((what, part)),
             Report::Reads(files) => self.watch.scene(&files),
             Report::Loaded(scene) => self.loaded(scene),
             Report::LoadFailed(why) => {
-                self.loading = None;
+                self.scene.loading = None;
                 self.event(
                     "load failed",
                     json!({ "why": why, "scene": self.desired.scene }),
                 );
-                self.no_scene = self.scene.is_none();
-                self.trouble = Some(why);
+                self.scene.missing = self.scene.loaded.is_none();
+                self.messages.trouble = Some(why);
                 self.return_to_scene();
                 self.send_request();
             }
@@ -172,39 +172,41 @@ impl Workbench {
                 let volume = info
                     .zip(number)
                     .is_some_and(|(i, n)| i.textures.get(n).is_some_and(|t| t.volume));
-                self.inspector.note(target, *texels, volume, &self.wake);
+                self.tabs
+                    .inspector
+                    .note(target, *texels, volume, &self.setup.wake);
             }
-            Report::Table(number, table, bytes) => self.tables.note(number, table, bytes),
+            Report::Table(number, table, bytes) => self.tabs.tables.note(number, table, bytes),
             Report::Checks(side, failed) => self.sides[side].checks = failed,
             Report::Captured(result) => {
                 let ok = result.is_ok();
                 let text = match result {
                     Ok(path) => {
-                        self.gallery.forget();
+                        self.tabs.gallery.forget();
                         format!("captured {}", path.display())
                     }
                     Err(why) => format!("not captured: {why}"),
                 };
                 self.event("captured", json!({ "ok": ok, "text": text }));
-                self.gallery.captured(ok, &text);
-                self.status = text;
+                self.tabs.gallery.captured(ok, &text);
+                self.messages.status = text;
             }
             Report::Error(result) => self.error_came(result),
             Report::DeviceFailed(text) => {
                 self.event("device failed", json!({ "text": text }));
                 self.device = None;
-                self.trouble = Some(text);
+                self.messages.trouble = Some(text);
             }
             Report::Trouble(text) => {
                 self.event("trouble", json!({ "text": text }));
-                self.trouble = Some(text);
+                self.messages.trouble = Some(text);
             }
         }
     }
 
     /// Has the host show these in place of those that wait for it.
     fn show(&mut self, pixels: NewPixels) {
-        // A frame whose picture was left out shows what there was.
+        // A frame without a picture keeps the last one.
         if pixels.bytes.is_some() || pixels.shared.is_some() {
             self.pixels.retain(|p| p.picture != pixels.picture);
             self.pixels.push(pixels);
@@ -222,8 +224,8 @@ impl Workbench {
         if self.desired.sides[picture.side].is_none() {
             return;
         }
-        self.times.note(&picture);
-        self.chart.note(&picture);
+        self.tabs.times.note(&picture);
+        self.tabs.chart.note(&picture);
         let number = picture.side;
         let (bytes, shared) = (picture.bytes.clone(), picture.shared.clone());
         self.show(NewPixels {
@@ -232,11 +234,14 @@ impl Workbench {
             bytes,
             shared,
         });
-        if self.events.is_some() {
-            let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
+        if self.setup.events.is_some() {
+            let since = self
+                .reload
+                .changed_at
+                .map(|t| t.elapsed().as_secs_f64() * 1e3);
             let fields = json!({ "side": number, "preview": picture.preview, "frame": picture.frame,
-                "request": picture.request, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
-                "asleep": picture.asleep.len(), "left": picture.left,
+                "request": picture.request, "size": picture.size, "time": picture.time, "gpu_ms": picture.times.gpu_ms,
+                "skipped": picture.times.skipped.len(), "left": picture.left,
                 "since_change_ms": since,
                 "shared": picture.shared.is_some(),
                 "fingerprint": picture.bytes.as_ref().map(|b| events::fingerprint(b)) });
@@ -246,36 +251,40 @@ impl Workbench {
     }
 
     fn loaded(&mut self, scene: Arc<Scene>) {
-        self.loading = None;
-        self.trouble = None;
-        self.loaded_scene = Some((self.desired.scene.clone(), self.desired.environment.clone()));
-        (self.before_loading, self.no_scene) = (None, false);
-        let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name)
+        self.scene.loading = None;
+        self.messages.trouble = None;
+        self.scene.source = Some((self.desired.scene.clone(), self.desired.environment.clone()));
+        (self.scene.before, self.scene.missing) = (None, false);
+        let same = self
+            .scene
+            .loaded
+            .as_ref()
+            .is_some_and(|s| s.name == scene.name)
             && self.desired.camera.is_some();
-        if !std::mem::take(&mut self.returning) && (!same || self.experiment.is_some()) {
+        if !std::mem::take(&mut self.undo.returning) && (!same || self.experiment.file.is_some()) {
             let fallback = Experiment {
                 camera: CameraChoice::Named("default".into()),
                 ..self.bare()
             };
-            let experiment = self.experiment.take().unwrap_or(fallback);
+            let experiment = self.experiment.file.take().unwrap_or(fallback);
             match save::lights(&experiment, &scene) {
                 Ok(lights) => self.desired.lights = lights,
-                Err(e) => self.trouble = Some(e.to_string()),
+                Err(e) => self.messages.trouble = Some(e.to_string()),
             }
             match viewpoint_of(&experiment, &scene) {
                 Ok(v) => self.desired.camera = Some(v.camera),
                 Err(e) => {
-                    self.trouble = Some(e.to_string());
+                    self.messages.trouble = Some(e.to_string());
                     self.desired.camera = Some(Viewpoint::around(&scene).camera);
                 }
             }
         }
         let (low, high) = scene.bounds();
-        self.diagonal = (high - low).length().max(1e-3);
+        self.scene.diagonal = (high - low).length().max(1e-3);
         let (name, triangles) = (scene.name.clone(), scene.triangle_count());
-        self.scene = Some(scene);
+        self.scene.loaded = Some(scene);
         let warnings = self.scene_warnings();
-        self.warned = !warnings.is_empty();
+        self.scene.warned = !warnings.is_empty();
         self.event(
             "loaded",
             json!({ "scene": name, "triangles": triangles, "warnings": warnings }),

@@ -1,4 +1,4 @@
-//! What the user edits: parameters of a side.
+//! Edits of a side's parameters.
 
 use super::request::SideRequest;
 use crate::graph::param::{OFF, Param, Params, Value};
@@ -12,7 +12,7 @@ pub fn changed(params: &Params) -> Vec<(String, String)> {
         .collect()
 }
 
-/// A parameter's value in a side: what is set, else the default.
+/// A parameter's value in a side: as set, else the default.
 pub fn value(side: &SideRequest, param: &Param) -> Value {
     let set = side
         .params
@@ -30,7 +30,7 @@ pub fn off(side: &SideRequest, params: &Params) -> Vec<String> {
     };
     let mut params = params.clone();
     params.off.clear();
-    // A pass that the graph no longer has is said by the build.
+    // The build reports passes that the graph no longer has.
     let _ = params.set(OFF, text);
     params.off
 }

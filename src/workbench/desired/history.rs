@@ -3,7 +3,7 @@
 use super::request::RenderRequest;
 use crate::workbench::Workbench;
 
-/// What an edit changes, and what opening an experiment changes besides.
+/// The state that undo restores.
 #[derive(Clone)]
 pub struct State {
     desired: RenderRequest,
@@ -13,7 +13,8 @@ pub struct State {
     time: f64,
 }
 
-/// A state, and whether the way to or from it was the opening of an experiment: then view, size and time are part of it.
+/// A state, and whether the way to or from it was the opening of an experiment: then view, size and
+/// time are part of it.
 type Step = (State, bool);
 
 /// The states of a session.
@@ -29,8 +30,8 @@ pub struct History {
 const MOST: usize = 200;
 
 impl State {
-    /// Whether undo has nothing to do between two states: views and measurements do not count, unless an experiment was
-    /// opened.
+    /// Whether undo has nothing to do between two states: views and measurements do not count,
+    /// unless an experiment was opened.
     fn same(&self, other: &State, opened: bool) -> bool {
         let (a, b) = (&self.desired, &other.desired);
         let edit = a.sides == b.sides
@@ -47,7 +48,8 @@ impl History {
         self.opened = true;
     }
 
-    /// Remembers the state after an edit; while `held` (a slider in the hand) it is still the same edit.
+    /// Remembers the state after an edit; while `held` (a slider in the hand) it is still the same
+    /// edit.
     fn note(&mut self, state: State, held: bool) {
         let opened = self.opened;
         match &mut self.settled {
@@ -88,7 +90,8 @@ impl History {
 }
 
 impl History {
-    /// Forgets a scene that could not be loaded: its states take the scene of `before`, to which the session returns.
+    /// Forgets a scene that could not be loaded: its states take the scene of `before`, to which
+    /// the session returns.
     fn forget_scene(&mut self, failed: (&str, &str), before: &State) {
         let settled = self.settled.iter_mut();
         let states = self
@@ -130,31 +133,33 @@ impl State {
 }
 
 impl Workbench {
-    /// Returns to the scene that is shown, and to all that was asked for before another one was, because that one could
-    /// not be loaded.
+    /// Returns to the scene that is shown, and to all that was asked for before another one was,
+    /// because that one could not be loaded.
     pub(crate) fn return_to_scene(&mut self) {
-        let Some(before) = self.before_loading.take() else {
+        let Some(before) = self.scene.before.take() else {
             return;
         };
         let failed = (self.desired.scene.clone(), self.desired.environment.clone());
         let (revision, scene_revision) = (self.desired.revision, self.desired.scene_revision);
-        let (clock, continuous, redo) = (
+        let (clock, continuous, execution) = (
             self.desired.clock,
             self.desired.continuous,
-            self.desired.redo,
+            self.desired.execution,
         );
         self.desired = before.desired.clone();
         (self.desired.revision, self.desired.scene_revision) = (revision, scene_revision);
         (
             self.desired.clock,
             self.desired.continuous,
-            self.desired.redo,
-        ) = (clock, continuous, redo);
-        self.name.clone_from(&before.name);
-        self.fixed_size = before.fixed_size;
-        (self.experiment, self.returning) = (None, false);
+            self.desired.execution,
+        ) = (clock, continuous, execution);
+        self.experiment.name.clone_from(&before.name);
+        self.layout.fixed_size = before.fixed_size;
+        (self.experiment.file, self.undo.returning) = (None, false);
         self.view.picture.clone_from(&self.desired.environment);
-        self.history.forget_scene((&failed.0, &failed.1), &before);
+        self.undo
+            .history
+            .forget_scene((&failed.0, &failed.1), &before);
     }
 
     pub(crate) fn state(&self) -> State {
@@ -164,8 +169,8 @@ impl Workbench {
             .map_or(self.desired.clock.at, |p| p.time);
         State {
             desired: self.desired.clone(),
-            name: self.name.clone(),
-            fixed_size: self.fixed_size,
+            name: self.experiment.name.clone(),
+            fixed_size: self.layout.fixed_size,
             time,
         }
     }
@@ -173,7 +178,7 @@ impl Workbench {
     /// Remembers what there is now; see [`History::note`].
     pub(crate) fn remember(&mut self, held: bool) {
         let state = self.state();
-        self.history.note(state, held);
+        self.undo.history.note(state, held);
     }
 
     /// Goes back, or forth, by one edit.
@@ -187,7 +192,7 @@ impl Workbench {
                 time,
             },
             opened,
-        )) = self.history.step(now, back)
+        )) = self.undo.history.step(now, back)
         else {
             return;
         };
@@ -198,7 +203,7 @@ impl Workbench {
             self.view.picture.clone_from(&desired.environment);
             self.desired.environment = desired.environment;
             // It is seen as it was, not as an experiment would have it.
-            self.returning = desired.camera.is_some();
+            self.undo.returning = desired.camera.is_some();
             self.desired.camera = desired.camera;
         }
         self.desired.sides = desired.sides;
@@ -208,9 +213,13 @@ impl Workbench {
             self.desired.size = desired.size;
             self.desired.clock.at = time;
             self.desired.clock.jumps += 1;
-            (self.name, self.fixed_size, self.resize_since) = (name, fixed_size, None);
-            self.experiment = None;
+            (
+                self.experiment.name,
+                self.layout.fixed_size,
+                self.layout.resize_since,
+            ) = (name, fixed_size, None);
+            self.experiment.file = None;
         }
-        self.history.settled = Some(self.state());
+        self.undo.history.settled = Some(self.state());
     }
 }

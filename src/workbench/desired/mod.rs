@@ -1,4 +1,4 @@
-//! What the user wants to see: the desired state, how it is edited, undone, compared and saved.
+//! The desired state: editing, undo, comparison and saving.
 
 pub mod edit;
 pub(crate) mod history;

@@ -1,9 +1,9 @@
-//! The desired state: what the window wants to see. The engine always works towards the latest request.
+//! The desired state of the window. The engine always works towards the latest request.
 
 use crate::camera_path::CameraPath;
 use crate::diagnostics::{At, Loc, Sources};
 use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
-use crate::graph::run::Redo;
+use crate::graph::run::Execution;
 use crate::lab::Session;
 use crate::scene::{Camera, Light, Scene};
 use crate::vulkan::DeviceId;
@@ -25,11 +25,11 @@ pub struct Clock {
     pub playing: bool,
     /// Seconds from frame to frame; real time when absent.
     pub step: Option<f64>,
-    /// Single steps asked for so far.
+    /// Number of requested single steps.
     pub steps: u64,
     /// Time to start from, s, taken when `jumps` grows.
     pub at: f64,
-    /// Jumps in time so far.
+    /// Number of jumps in time.
     pub jumps: u64,
 }
 
@@ -57,7 +57,7 @@ pub struct LightState {
     pub lights: Vec<Light>,
     /// Radiance of the sky, or what its picture is multiplied by.
     pub sky: Vec3,
-    /// Of the sky's picture about y, degrees.
+    /// Rotation of the sky's picture about y, degrees.
     pub rotation: f32,
 }
 
@@ -82,7 +82,7 @@ impl LightState {
     }
 }
 
-/// Everything that decides what is rendered.
+/// All inputs of the picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RenderRequest {
     /// A and, when compared, B.
@@ -104,18 +104,19 @@ pub struct RenderRequest {
     /// Render on when nothing changes, to measure.
     pub continuous: bool,
     /// What frames do.
-    pub redo: Redo,
-    /// Files of graphs or shaders changed so often.
+    pub execution: Execution,
+    /// Number of changes of graph and shader files.
     pub revision: u64,
-    /// The scene's files changed so often.
+    /// Number of changes of the scene's files.
     pub scene_revision: u64,
-    /// What the inspector shows.
+    /// The texture in the inspector.
     pub inspect: Option<InspectTarget>,
     /// The table shown, by the number that the graph gives it, of side A.
     pub table: Option<usize>,
     /// The device that paints the pictures; with one of the same kind they stay in its memory.
     pub window: Option<DeviceId>,
-    /// Whether every picture is wanted in main memory; the last one before a rest comes there all the same.
+    /// Whether every picture is wanted in main memory; the last one before a rest comes there all
+    /// the same.
     pub bytes: bool,
 }
 

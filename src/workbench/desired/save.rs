@@ -10,7 +10,7 @@ use crate::scene::{Light, LightKind, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A side as an experiment of its own, with what differs from the scene's light.
+/// A side as an experiment, with its differences from the scene's light.
 pub fn experiment(
     desired: &RenderRequest,
     side: &SideRequest,

@@ -1,11 +1,11 @@
-//! A and B: how a comparison begins and ends, and what they differ in.
+//! A and B: beginning and end of a comparison, and their differences.
 
 use super::edit;
 use super::request::SideRequest;
 use crate::graph::param::OFF;
 use crate::workbench::{Workbench, short};
 
-/// What A was before a comparison, and what the comparison made of it.
+/// A before a comparison, and as the comparison changed it.
 pub(crate) type Alone = Option<(SideRequest, SideRequest)>;
 
 /// Most parameters that are named.
@@ -18,17 +18,17 @@ impl Workbench {
             graph: graph.into(),
             ..side.clone()
         };
-        if let Ok(graph) = self.home.read(graph) {
+        if let Ok(graph) = self.setup.home.read(graph) {
             side.params
                 .retain(|(name, value)| graph.params.clone().set(name, value).is_ok());
         }
         side
     }
 
-    /// Shows two sides beside each other.
+    /// Shows two sides next to each other.
     pub(crate) fn compare_sides(&mut self, sides: [Option<SideRequest>; 2]) {
         let now = self.desired.sides[0].clone();
-        // A comparison that follows another ends with what was before the first.
+        // A comparison that follows another ends with the state before the first.
         let first = self
             .alone
             .take()
@@ -36,7 +36,7 @@ impl Workbench {
         let before = first.map(|(before, _)| before).or(now);
         self.alone = before.zip(sides[0].clone());
         self.desired.sides = sides;
-        self.panel_side = 1;
+        self.panel.side = 1;
     }
 
     /// Shows A alone: as it was before the comparison, unless it was edited since.
@@ -49,7 +49,7 @@ impl Workbench {
         }
     }
 
-    /// What A and B differ in, a few words each; nothing where they are the same, or there is no B.
+    /// The differences of A and B, a few words each; empty if they are equal, or without B.
     pub(crate) fn sides_in_words(&self) -> [String; 2] {
         let [Some(a), Some(b)] = &self.desired.sides else {
             return Default::default();

@@ -8,7 +8,7 @@ use crate::results::timers::Rows;
 use crate::workbench::desired::save;
 
 impl Run<'_> {
-    /// Sends what a side shows to the error worker. A picture that is not there yet is asked for again.
+    /// Sends a side's picture to the error worker. A missing picture is requested again.
     pub(super) fn measure_error(&mut self, number: usize, query: ErrorQuery) {
         let (Some(desired), Some(scene)) = (&self.desired.sides[number], &self.scene) else {
             return;
@@ -19,7 +19,7 @@ impl Run<'_> {
             .as_ref()
             .filter(|_| side.key.as_ref() == Some(&self.key(desired, number)));
         let (Some(session), Some(loaded)) = (shown, &side.loaded) else {
-            let result = Err("what is asked for is not shown".into());
+            let result = Err("the requested picture is not shown".into());
             self.out.send(Report::Error(ErrorResult {
                 side: number,
                 request: self.number,
@@ -44,7 +44,8 @@ impl Run<'_> {
         let _ = self.error_requests.send(request);
     }
 
-    /// Captures on a thread of its own, from a fresh start, so that a replay can give the same bits.
+    /// Captures on a thread of its own, from a fresh start, so that a replay can give the same
+    /// bits.
     pub(super) fn capture(
         &mut self,
         number: usize,

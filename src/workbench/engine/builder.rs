@@ -1,5 +1,5 @@
-//! Builds sessions in the background, on a thread of its own: read, compile, check, plan, make pipelines. Nothing waits
-//! for it.
+//! Builds sessions in the background, on a thread of its own: read, compile, check, plan, make
+//! pipelines. Nothing waits for it.
 
 use super::guard::guarded;
 use crate::experiment::Experiment;
@@ -9,7 +9,7 @@ use crossbeam_channel::{Receiver, Sender};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// What a session is built from; two equal keys give the same session.
+/// The inputs of a session; equal keys give the same session.
 #[derive(Clone, PartialEq)]
 pub struct Key {
     /// Graph file.
@@ -22,7 +22,7 @@ pub struct Key {
     pub revision: u64,
     /// Which scene was loaded.
     pub scene: u64,
-    /// Further resources whose content is read.
+    /// Further resources to read back.
     pub wanted: Vec<String>,
 }
 
@@ -30,7 +30,7 @@ pub struct Key {
 pub struct Job {
     /// 0 is A, 1 is B.
     pub side: usize,
-    /// Key of what is built.
+    /// Key of the session in work.
     pub key: Key,
     /// The experiment of the key.
     pub experiment: Experiment,
@@ -50,7 +50,7 @@ pub struct Job {
 pub struct Done {
     /// 0 is A, 1 is B.
     pub side: usize,
-    /// Key of what was built.
+    /// Key of the new session.
     pub key: Key,
     /// Whether this is only the preview.
     pub preview: bool,
@@ -82,7 +82,7 @@ pub fn run(jobs: &Receiver<Job>, done: &Sender<Done>) {
 }
 
 fn build(job: Job) -> Result<(Box<Session>, Loaded), LabError> {
-    // What does not run is not waited for: it is compiled when it first runs.
+    // Other passes are compiled when they first run.
     let home = &job.lab.home;
     let loaded = match &job.loaded {
         Some(loaded) => home.complete(loaded, &job.experiment, &job.scene, &job.lab.gpu.info),

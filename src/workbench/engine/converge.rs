@@ -67,7 +67,8 @@ impl Run<'_> {
         });
     }
 
-    /// Counts a frame that a side has begun. Frames after which the picture cannot change any more are left out.
+    /// Counts a frame that a side has begun. Frames after which the picture cannot change any more
+    /// are left out.
     pub(super) fn count_frame(&mut self, number: usize) {
         let side = &mut self.sides[number];
         side.fresh = false;
@@ -82,8 +83,8 @@ impl Run<'_> {
         }
     }
 
-    /// Restarts A and B together once both show the request, so that equal settings give equal pictures and both are timed
-    /// over the same frames.
+    /// Restarts A and B together once both show the request, so that equal settings give equal
+    /// pictures and both are timed over the same frames.
     pub(super) fn restart_together(&mut self) -> Result<(), LabError> {
         let shows = |number: usize| {
             let side = &self.sides[number];

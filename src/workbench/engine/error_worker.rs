@@ -1,5 +1,6 @@
-//! The error worker: the error of what is shown against its cached reference, on a thread of its own: the picture is
-//! rendered afresh, as a sweep would, so that neither the picture's frames nor their times wait for it.
+//! The error worker: the error of what is shown against its cached reference, on a thread of its
+//! own: the picture is rendered afresh, as a sweep would, so that neither the picture's frames nor
+//! their times wait for it.
 
 use super::guard::guarded;
 use super::report::Report;
@@ -15,7 +16,7 @@ use crate::workbench::desired::request::LightState;
 use crossbeam_channel::Receiver;
 use std::sync::Arc;
 
-/// The error that is asked for.
+/// The requested error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorQuery {
     /// Part of the light, as the graph names it.
@@ -24,11 +25,11 @@ pub struct ErrorQuery {
     pub metric: &'static Metric,
     /// Bounces of the reference.
     pub bounces: u32,
-    /// References gathered so far: the cached one may be another after each.
+    /// Number of gathered references. Each may replace the cached one.
     pub gathered: u64,
 }
 
-/// A picture whose error is asked for.
+/// A picture for which an error is requested.
 pub struct ErrorRequest {
     /// 0 is A, 1 is B.
     pub side: usize,
@@ -36,7 +37,7 @@ pub struct ErrorRequest {
     pub request: u64,
     /// Revision of the files.
     pub revision: u64,
-    /// The error that is asked for.
+    /// The requested error.
     pub query: ErrorQuery,
     /// The device.
     pub lab: Lab,
@@ -50,7 +51,7 @@ pub struct ErrorRequest {
     pub scene: Arc<Scene>,
     /// Light that differs from the scene's own.
     pub lights: Option<LightState>,
-    /// Frames until the picture has settled.
+    /// Frames until the picture has converged.
     pub frames: usize,
 }
 
@@ -59,9 +60,9 @@ pub struct ErrorRequest {
 pub struct ErrorResult {
     /// 0 is A, 1 is B.
     pub side: usize,
-    /// Number of the render request whose picture was measured.
+    /// Number of the render request of the measured picture.
     pub request: u64,
-    /// The error that was asked for.
+    /// The requested error.
     pub query: ErrorQuery,
     /// The answer, or why there is none.
     pub result: Result<PictureError, String>,
@@ -97,7 +98,8 @@ struct Cache {
     hash: Option<(Arc<Scene>, String, String)>,
 }
 
-/// Measures errors until the requests' sender is gone; of several requests for a side only the newest counts.
+/// Measures errors until the requests' sender is gone; of several requests for a side only the
+/// newest counts.
 pub(crate) fn run(requests: &Receiver<ErrorRequest>, send: &dyn Fn(Report)) {
     let mut loaded = Cache::default();
     while let Ok(first) = requests.recv() {
@@ -149,8 +151,8 @@ impl Cache {
         })
     }
 
-    /// Scene, camera, size and time of the picture, as sweeps write them down. The hash of a large scene takes a
-    /// second: it is kept.
+    /// Scene, camera, size and time of the picture, as sweeps write them down. The hash of a large
+    /// scene takes a second: it is kept.
     fn subject(&mut self, request: &ErrorRequest) -> Result<Subject, LabError> {
         let light = format!("{:?}", request.lights);
         let known = self

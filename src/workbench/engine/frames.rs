@@ -14,7 +14,8 @@ use std::time::{Duration, Instant};
 const UNSEEN: Duration = Duration::from_millis(100);
 
 impl Run<'_> {
-    /// Renders the frames that are left, A and B in turns, so that neither always finds the clocks raised by the other.
+    /// Renders the remaining frames of A and B alternately, so that neither always profits from
+    /// clocks raised by the other.
     pub(super) fn render(&mut self) -> Result<(), LabError> {
         if self.awaits_build() {
             return Ok(());
@@ -39,8 +40,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Whether the window has not taken the last pictures yet, and none is awaited to settle: another one would be thrown
-    /// away, and takes the GPU from the window that is to show them.
+    /// Whether the window has not taken the last pictures yet, and none is awaited to settle:
+    /// another one would be thrown away, and takes the GPU from the window that is to show them.
     fn is_ahead(&self) -> bool {
         let shown = self.sides.iter().filter(|s| s.session.is_some()).count();
         self.sides.iter().all(|s| s.frames_left <= 1) && self.out.reports.len() >= shown
@@ -86,7 +87,7 @@ impl Run<'_> {
             lights.light(session);
         }
         session.set_time(self.clock.now);
-        session.set_redo(self.desired.redo);
+        session.set_execution(self.desired.execution);
         side.frame += 1;
         side.submitted.push_back(Submitted {
             request: side.answered,
@@ -114,8 +115,8 @@ impl Run<'_> {
         if !rest {
             side.frames_left = side.frames_left.max(1);
         }
-        // Long frames gain nothing from another one ahead, and an edit would wait for it; a still picture must not wait
-        // for the next change.
+        // Long frames gain nothing from another one ahead, and an edit would wait for it; a still
+        // picture must not wait for the next change.
         let waits = side.frames_left == 0 || captured.is_some() || self.waited;
         let ahead = u64::from(!(software || side.last_ms > LONG || waits));
         let Some(session) = &mut side.session else {
@@ -132,12 +133,12 @@ impl Run<'_> {
 
     pub(super) fn report_frames(&mut self, number: usize, finished: Vec<FrameTimes>) {
         let side = &mut self.sides[number];
-        for times in finished {
+        for mut times in finished {
             let Some(submitted) = side.submitted.pop_front() else {
                 continue;
             };
             side.last_ms = times.gpu_ms;
-            let (bytes, shared) = (times.picture.map(Arc::new), times.handed);
+            let (bytes, shared) = (times.picture.take().map(Arc::new), times.handed.take());
             side.owes = bytes.is_none().then_some(submitted.frame);
             self.out.send(Report::Picture(PictureReport {
                 side: number,
@@ -152,22 +153,20 @@ impl Run<'_> {
                 size: submitted.size.into(),
                 bytes,
                 shared,
-                passes: times.passes,
-                asleep: times.asleep,
-                gpu_ms: times.gpu_ms,
-                cpu_ms: times.cpu_ms,
+                times,
             }));
         }
     }
 
-    /// Whether a side rests whose last picture is not in main memory yet.
+    /// Whether the last picture of a converged side is not in main memory yet.
     pub(super) fn owes_pixels(&self) -> bool {
         self.sides
             .iter()
             .any(|s| s.owes.is_some() && s.session.is_some())
     }
 
-    /// Brings the last picture of sides that rest into main memory, where it is compared and read out.
+    /// Brings the last picture of sides that rest into main memory, where it is compared and read
+    /// out.
     pub(super) fn pay_pixels(&mut self) -> Result<(), LabError> {
         for number in 0..2 {
             let side = &mut self.sides[number];
@@ -188,7 +187,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Reads what the inspector and the table show: at once when still, else some times a second.
+    /// Reads the inspector's texture and the table: at once if nothing changes, else several times
+    /// a second.
     fn read_back(&mut self, number: usize) -> Result<(), LabError> {
         let side = &mut self.sides[number];
         let Some(session) = side.session.as_mut().filter(|_| !side.preview) else {
@@ -215,7 +215,8 @@ impl Run<'_> {
                         .send(Report::Texels(target.clone(), Box::new(texels)));
                 }
                 Err(LabError::Vulkan(e)) => return Err(e.into()),
-                // Not made with these parameters: a build that makes it is on its way, or the window says so.
+                // Not made with these parameters: a build that makes it is on its way, or the
+                // window says so.
                 Err(_) => {}
             }
         }

@@ -3,8 +3,8 @@
 use crate::diagnostics::panics::said;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The work's result, or what it said when it panicked. What it had in hand is dropped; nothing shared is left half done, as
-/// workers own what they change.
+/// The work's result, or what it said when it panicked. What it had in hand is dropped; nothing
+/// shared is left half done, as workers own what they change.
 pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work))
         .map_err(|panic| format!("a fault in the program: {}", said(panic.as_ref())))

@@ -1,8 +1,9 @@
-//! The engine: a thread with a device of its own, which renders what the window requests.
+//! The engine: a thread with a device of its own, which renders the window's requests.
 //!
-//! The window has a second device. So it answers while a frame takes seconds, and a shader which hangs or kills its
-//! device takes nothing else with it. Pictures stay in the memory of the physical device where both are on the same one
-//! and it can share memory; else each goes through main memory (8 MB at 1080p, about a millisecond each way).
+//! The window has a second device. So it answers while a frame takes seconds, and a shader which
+//! hangs or kills its device takes nothing else with it. Pictures stay in the memory of the
+//! physical device where both are on the same one and it can share memory; else each goes through
+//! main memory (8 MB at 1080p, about a millisecond each way).
 
 mod background;
 mod builder;
@@ -22,6 +23,7 @@ use crate::lab::{Lab, LabError, Loaded, Session, Workspace};
 use crate::results::timers::Rows;
 use crate::scene::{Scene, SceneError};
 use crate::vulkan::GpuOptions;
+use crate::workbench::background::Wake;
 use crate::workbench::desired::request::{InspectTarget, RenderRequest};
 use builder::{Done, Job, Key};
 use converge::Need;
@@ -34,21 +36,22 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// What the window asks of the engine, besides the desired state.
+/// Orders of the window to the engine, in addition to the desired state.
 pub enum Order {
     /// The desired state changed.
     Reconcile,
-    /// Save what side A or B shows, under a name; with these resources, and with times on the picture.
+    /// Save what side A or B shows, under a name; with these resources, and with times on the
+    /// picture.
     Capture(usize, String, Vec<String>, Rows),
     /// Measure the error of what side A or B shows against its reference.
     MeasureError(usize, ErrorQuery),
-    /// Render so many more frames of what is shown, to measure.
+    /// Render this number of further frames of the same picture, to measure.
     Frames(u32),
     /// Stop the loading of a scene.
     CancelLoading,
     /// Capture a frame with RenderDoc.
     RenderDoc,
-    /// Open the device anew.
+    /// Restart the device.
     Restart,
     /// End.
     Quit,
@@ -69,31 +72,22 @@ pub struct Engine {
 
 impl Engine {
     /// Starts the engine; `wake` is called after each report.
-    pub fn start(
-        home: Workspace,
-        options: GpuOptions,
-        wake: Arc<dyn Fn() + Send + Sync>,
-    ) -> Engine {
+    pub fn start(home: Workspace, options: GpuOptions, wake: Wake) -> Engine {
         Engine::begin(home, options, wake, None)
     }
 
-    /// Starts an engine in the place of one that failed. It waits for a change of what is requested, or to be restarted: the
-    /// same again would fail again.
+    /// Starts an engine in the place of one that failed. It waits for a change of what is
+    /// requested, or to be restarted: the same again would fail again.
     pub fn replace(
         home: Workspace,
         options: GpuOptions,
-        wake: Arc<dyn Fn() + Send + Sync>,
+        wake: Wake,
         failed: (u64, RenderRequest),
     ) -> Engine {
         Engine::begin(home, options, wake, Some(failed))
     }
 
-    fn begin(
-        home: Workspace,
-        options: GpuOptions,
-        wake: Arc<dyn Fn() + Send + Sync>,
-        failed: Option<Numbered>,
-    ) -> Engine {
+    fn begin(home: Workspace, options: GpuOptions, wake: Wake, failed: Option<Numbered>) -> Engine {
         let waits = failed.is_some();
         let patience = Some(options.patience.unwrap_or(FRAME_PATIENCE));
         let options = GpuOptions {
@@ -121,7 +115,8 @@ impl Engine {
         }
     }
 
-    /// Why the engine is no longer there to render: its thread has ended, or stands still in the driver.
+    /// Why the engine is no longer there to render: its thread has ended, or stands still in the
+    /// driver.
     pub fn failure(&mut self) -> Option<String> {
         if self
             .thread
@@ -146,7 +141,8 @@ impl Engine {
         self.pulse.beats()
     }
 
-    /// Works towards this from now on. Requests are numbered in their order: what answers one says its number.
+    /// Works towards this from now on. Requests are numbered in their order: what answers one says
+    /// its number.
     pub fn request(&self, number: u64, request: RenderRequest) {
         *self
             .desired
@@ -161,7 +157,8 @@ impl Engine {
         let _ = self.orders.send(order);
     }
 
-    /// Ends the engine: waits for the frame in work, at most so long. Returns the validation messages of its device.
+    /// Ends the engine: waits for the frame in work, at most so long. Returns the validation
+    /// messages of its device.
     pub fn stop(mut self, patience: Duration) -> Vec<String> {
         self.order(Order::Quit);
         let until = Instant::now() + patience;
@@ -183,7 +180,7 @@ impl Engine {
 #[derive(Clone)]
 struct Out {
     reports: Sender<Report>,
-    wake: Arc<dyn Fn() + Send + Sync>,
+    wake: Wake,
 }
 
 impl Out {
@@ -206,7 +203,7 @@ struct Submitted {
 struct Side {
     session: Option<Box<Session>>,
     loaded: Option<Loaded>,
-    /// What the session was built from.
+    /// The inputs of the session.
     key: Option<Key>,
     /// What could not be built.
     failed: Option<Key>,
@@ -221,9 +218,9 @@ struct Side {
     answered: u64,
     /// Frames still to render until its picture has converged.
     frames_left: u32,
-    /// Of these, frames that are rendered even if the picture has converged before.
+    /// Frames among these that are rendered even if the picture has converged.
     least_left: u32,
-    /// Frames that were left when they were last asked for.
+    /// Remaining frames at the last request.
     frames_asked: u32,
     /// Whether no frame has run since its histories were empty.
     fresh: bool,
@@ -240,13 +237,13 @@ struct Run<'a> {
     lab: Lab,
     out: &'a Out,
     desired: RenderRequest,
-    /// Of the desired state.
+    /// Number of the desired state.
     number: u64,
     sides: [Side; 2],
     jobs: Sender<Job>,
     error_requests: Sender<ErrorRequest>,
     scene: Option<Arc<Scene>>,
-    /// What was loaded: name, revision; and how many scenes were.
+    /// Name and revision of the loaded scene, and the number of loads.
     scene_key: Option<(String, String, u64)>,
     /// The same of the scene that is there.
     loaded_key: Option<(String, String, u64)>,
@@ -255,7 +252,7 @@ struct Run<'a> {
     loaded: Sender<Result<Arc<Scene>, SceneError>>,
     clock: Clocked,
     turn: usize,
-    /// Whether A and B start anew together once both show what is requested.
+    /// Whether A and B restart together once both show their requests.
     restarts: bool,
     renderdoc: bool,
     last_read_back: Instant,
@@ -285,7 +282,7 @@ fn run(
     loop {
         if std::mem::take(&mut waits) {
             pulse.rest();
-            // What was requested must not be tried again unchanged: it may kill the device each time.
+            // An unchanged request must not be tried again: it may kill the device each time.
             for order in inbox {
                 match order {
                     Order::Quit => return messages,
@@ -428,7 +425,7 @@ fn session(
         cancel.store(true, Ordering::Relaxed);
     }
     drop(run);
-    // Builds in work hold the device; what they send goes nowhere. A device that hangs is left to them.
+    // Running builds hold the device, and their results are dropped. They keep a device that hangs.
     while !(builder.is_finished() && worker.is_finished() || gpu.is_hung()) {
         pulse.beat();
         let _ = done.recv_timeout(Duration::from_millis(10));
@@ -444,7 +441,8 @@ impl Run<'_> {
             .any(|s| s.session.is_some() && s.frames_left > 0)
     }
 
-    /// Whether a build is about to be done, so that beginning a long frame of what it replaces would only delay it.
+    /// Whether a build is about to finish, so that a long frame of the old session would only delay
+    /// it.
     fn awaits_build(&self) -> bool {
         let soon = |since: Instant| since.elapsed() < PATIENCE;
         self.sides
@@ -514,8 +512,8 @@ impl Run<'_> {
             sides: old.sides.clone(),
             ..RenderRequest::default()
         };
-        // Files, parameters and sizes ask for frames when what they lead to has been built. While another scene is loaded,
-        // and when it cannot be, the one before answers.
+        // Files, parameters and sizes ask for frames when what they lead to has been built. While
+        // another scene is loaded, and when it cannot be, the one before answers.
         let new = &self.desired;
         let unseen = RenderRequest {
             sides: new.sides.clone(),

@@ -1,5 +1,5 @@
-//! Whether the engine's thread still moves. Waits for frames are bounded, so that a shader that hangs is noticed by the
-//! engine itself; a driver that stands still in a call is noticed here.
+//! Whether the engine's thread still moves. Waits for frames are bounded, so that a shader that
+//! hangs is noticed by the engine itself; a driver that stands still in a call is noticed here.
 
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 /// The time of the last sign of life, and how long the next may take.
 pub(super) struct Pulse(Mutex<(Option<Instant>, Duration)>);
 
-/// What opening a device, and what a step of the engine does besides its frames, may take.
+/// Longest time for opening a device, or for a step of the engine without its frames.
 const SLACK: Duration = Duration::from_secs(60);
 
 impl Pulse {

@@ -1,4 +1,4 @@
-//! Reconciling what a side shows with the desired state: values are set, or a build is swapped in.
+//! Reconciles a side with the desired state: sets values, or swaps in a build.
 
 use super::Run;
 use super::builder::{Done, Job, Key};
@@ -86,7 +86,7 @@ impl Run<'_> {
                 }
             }
         }
-        // B starts with what it can share with A, and the other way round.
+        // B starts with objects that it can share with A, and vice versa.
         let other = self.sides[1 - number]
             .session
             .as_ref()
@@ -205,7 +205,7 @@ impl Run<'_> {
         self.reconcile(number)
     }
 
-    /// Says what is wrong; what ran runs on. Only a lost device is an error of the engine.
+    /// Reports mistakes, and the old session runs on. Only a lost device is an error of the engine.
     fn fail(&mut self, number: usize, key: Key, error: LabError) -> Result<(), LabError> {
         if let LabError::Vulkan(VulkanError::Lost(_) | VulkanError::Hung(_)) = error {
             return Err(error);

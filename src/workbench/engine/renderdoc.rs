@@ -1,5 +1,5 @@
-//! Frame captures by RenderDoc, when the program runs under it; on Linux alone, where the program's own list of mappings says
-//! whether it does. Its library knows no macOS.
+//! Frame captures by RenderDoc, when the program runs under it; on Linux alone, where the program's
+//! own list of mappings says whether it does. Its library knows no macOS.
 
 /// A capture that has begun.
 #[cfg(target_os = "linux")]

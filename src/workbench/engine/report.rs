@@ -8,6 +8,7 @@ use crate::graph::link::Linked;
 use crate::graph::param::Params;
 use crate::graph::plan::TexturePlan;
 use crate::graph::run::Change;
+use crate::graph::run::FrameTimes;
 use crate::graph::table::Table;
 use crate::lab::Texels;
 use crate::scene::Scene;
@@ -50,17 +51,17 @@ pub struct GraphInfo {
     pub params: Params,
     /// The textures as they were made, in the graph's order.
     pub textures: Vec<TexturePlan>,
-    /// (name, bytes) of what was made.
+    /// (name, bytes) of resources that exist.
     pub memory: Vec<(String, u64)>,
     /// Bytes of geometry and textures of the scene.
     pub scene_bytes: u64,
     /// Numbers of the passes that run, in order.
     pub passes: Vec<usize>,
-    /// What the passes that run read and write, in order.
+    /// Reads and writes of the passes that run, in order.
     pub uses: Vec<PassUses>,
     /// Passes that do not run, and why.
     pub left_out: Vec<(usize, String)>,
-    /// Resources that passes which are off would write, and nobody else does.
+    /// Resources that only passes which are off would write.
     pub empty: Vec<String>,
     /// Findings that are no errors.
     pub warnings: Vec<Diagnostic>,
@@ -89,29 +90,25 @@ pub struct PictureReport {
     pub time: f64,
     /// Width and height.
     pub size: [u32; 2],
-    /// RGBA, 8 bits each, in main memory; where the window takes pictures from the device, only if it asked for them.
+    /// RGBA, 8 bits each, in main memory. If the window takes pictures from the device, only on
+    /// request.
     pub bytes: Option<Arc<Vec<u8>>>,
     /// The same on the device.
     pub shared: Option<Arc<Buffer>>,
-    /// (pass number, ms) on the GPU.
-    pub passes: Vec<(usize, f64)>,
-    /// Numbers of the passes that slept.
-    pub asleep: Vec<usize>,
-    /// First to last command on the GPU, ms.
-    pub gpu_ms: f64,
-    /// Recording and submitting on the CPU, ms.
-    pub cpu_ms: f64,
+    /// Times, without the picture.
+    pub times: FrameTimes,
 }
 
 /// A message from the engine.
 pub enum Report {
     /// A device was opened.
     Device(DeviceReport),
-    /// A side runs something new. The times are those of the whole build, ms, and of the wait from the change to it.
+    /// A side runs something new. The times are those of the whole build, ms, and of the wait from
+    /// the change to it.
     Built {
         /// 0 is A, 1 is B.
         side: usize,
-        /// What runs.
+        /// The running session.
         info: Arc<GraphInfo>,
         /// Numbers of objects kept and rebuilt.
         change: Change,
@@ -138,7 +135,7 @@ pub enum Report {
         /// The values.
         params: Params,
     },
-    /// A and B start anew together: their pictures and times so far are not of the same frames.
+    /// A and B restart together, because their pictures and times are not of the same frames.
     Restarted,
     /// A frame has finished.
     Picture(PictureReport),
@@ -159,7 +156,7 @@ pub enum Report {
     Loaded(Arc<Scene>),
     /// A scene could not be loaded; the one before stays.
     LoadFailed(String),
-    /// Texels that the inspector asked for.
+    /// Texels for the inspector.
     Texels(InspectTarget, Box<Texels>),
     /// Number of a table, where its columns lie, and the bytes of its buffer, of side A.
     Table(usize, Table, Vec<u8>),
@@ -167,7 +164,7 @@ pub enum Report {
     Checks(usize, Vec<String>),
     /// A capture was made, or why not.
     Captured(Result<PathBuf, String>),
-    /// The error of what is shown.
+    /// The error of a shown picture.
     Error(ErrorResult),
     /// The device failed, and what can be done: the engine waits.
     DeviceFailed(String),

@@ -63,7 +63,7 @@ impl Run<'_> {
                     vec![key.0.clone().into()],
                 )
             });
-            // A load that was replaced by another has nobody to report to.
+            // A load that was replaced by another has no receiver.
             if !cancel.load(Ordering::Relaxed) || matches!(scene, Err(SceneError::Cancelled)) {
                 out.send(Report::Reads(files));
                 let _ = loaded.send(scene.map(Arc::new));

@@ -1,4 +1,4 @@
-//! Who shows the interface: a window, and screenshots without one.
+//! Hosts of the interface: a window, and screenshots without one.
 
 pub mod screenshot;
 pub mod window;

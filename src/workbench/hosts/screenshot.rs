@@ -1,5 +1,6 @@
-//! The workbench without a window system: painted into an image, worked by a script. It is the same interface as the
-//! window's, for pictures in documents and for measuring what the interface itself costs.
+//! The workbench without a window system: painted into an image, worked by a script. It is the same
+//! interface as the window's, for pictures in documents and for measuring what the interface itself
+//! costs.
 
 use crate::files::FileError;
 use crate::lab::LabError;
@@ -20,7 +21,8 @@ pub struct Script {
     pub size: (u32, u32),
     /// Pixels a point.
     pub scale: f32,
-    /// Labels of widgets to click on, one after the other; `X,Y` clicks at a point of the interface.
+    /// Labels of widgets to click on, one after the other; `X,Y` clicks at a point of the
+    /// interface.
     pub clicks: Vec<String>,
     /// Frames of the interface to measure at the end.
     pub measure: usize,
@@ -28,7 +30,7 @@ pub struct Script {
     pub pace: Option<Pace>,
     /// A file to save over and over.
     pub edit: Option<Edit>,
-    /// How long to wait for the picture to settle after each step.
+    /// How long to wait for the picture to converge after each step.
     pub patience: Duration,
 }
 
@@ -37,7 +39,7 @@ pub struct Script {
 pub struct Edit {
     /// The file.
     pub file: PathBuf,
-    /// A text that stands in it once.
+    /// A text that occurs in it once.
     pub from: String,
     /// What takes its place.
     pub to: String,
@@ -50,7 +52,8 @@ pub struct Edit {
 pub struct Pace {
     /// How many.
     pub pictures: usize,
-    /// Time from one frame of the interface to the next; whenever there is something new when absent.
+    /// Time from one frame of the interface to the next; whenever there is something new when
+    /// absent.
     pub every: Option<Duration>,
 }
 
@@ -62,18 +65,19 @@ pub struct Kept {
     pub painted: usize,
     /// From one picture's end to the next, in the engine; ms.
     pub engine_ms: Spread,
-    /// From one frame of the interface that shows a new picture to the next; of all frames, where those have a pace of their
-    /// own; ms.
+    /// From one frame of the interface that shows a new picture to the next; of all frames, where
+    /// those have a pace of their own; ms.
     pub paint_ms: Spread,
     /// From a picture's end to the submission of the frame that shows it, ms.
     pub delay_ms: Spread,
     /// CPU time of a frame of the interface, ms.
     pub cpu_ms: Spread,
-    /// Main memory that the process held after a tenth of the pictures, and after all; where the system says.
+    /// Main memory that the process held after a tenth of the pictures, and after all; where the
+    /// system says.
     pub memory: Option<(u64, u64)>,
 }
 
-/// The screenshot and what was measured on the way.
+/// The screenshot and its measurements.
 pub struct Shot {
     /// From the file's renaming until the picture made with it is painted, ms.
     pub edit_ms: Option<Spread>,
@@ -105,8 +109,8 @@ struct Host {
 /// Opens the workbench offscreen, follows the script and takes the picture.
 ///
 /// # Errors
-/// Everything that opening can fail with; a label that no widget has; a picture that does not settle in time;
-/// validation messages.
+/// Everything that opening can fail with; a label that no widget has; a picture that does not
+/// settle in time; validation messages.
 pub fn take(options: Options, gpu: &GpuOptions, script: Script) -> Result<Shot, LabError> {
     let (wake, woken) = unbounded();
     let gpu = Gpu::open(gpu)?;
@@ -386,7 +390,7 @@ impl Host {
             drop(pixels);
             workbench.painted();
         }
-        // Waiting for the GPU is not what the interface costs.
+        // Waiting for the GPU is no cost of the interface.
         Ok(begun.elapsed().as_secs_f64() * 1e3 - self.painter.waited_ms)
     }
 }

@@ -1,4 +1,5 @@
-//! The window: winit's events in, painted frames out. It has a device of its own, see [`crate::workbench::engine`].
+//! The window: winit's events in, painted frames out. It has a device of its own, see
+//! [`crate::workbench::engine`].
 
 use crate::lab::LabError;
 use crate::vulkan::{Gpu, GpuOptions, Painter, Pixels, Surface, VulkanError};
@@ -14,7 +15,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
 /// Something happened on another thread.
-struct Wake;
+struct WindowWake;
 
 /// How the window itself is opened.
 pub struct WindowOptions {
@@ -46,16 +47,20 @@ struct App {
 /// Opens the workbench in a window and runs until it is closed.
 ///
 /// # Errors
-/// No window system, no device that can present, an experiment that cannot be read; validation messages.
+/// No window system, no device that can present, an experiment that cannot be read; validation
+/// messages.
 pub fn run(options: Options, window: WindowOptions) -> Result<(), LabError> {
-    let event_loop = EventLoop::<Wake>::with_user_event().build().map_err(|e| {
+    let event_loop = EventLoop::<WindowWake>::with_user_event().build().map_err(|e| {
         LabError::Request(format!(
             "cannot open a window: {e}. It needs X11 or Wayland; `conelab render` and `conelab screenshot` need neither"
         ))
     })?;
     let proxy = event_loop.create_proxy();
-    // A window that has closed wakes nobody.
-    let workbench = Workbench::new(options, Arc::new(move || drop(proxy.send_event(Wake))))?;
+    // A closed window needs no wake-up.
+    let workbench = Workbench::new(
+        options,
+        Arc::new(move || drop(proxy.send_event(WindowWake))),
+    )?;
     let mut app = App {
         workbench: Some(workbench),
         options: window,
@@ -211,7 +216,7 @@ impl App {
     }
 }
 
-/// A size in points that fits a monitor of so many pixels.
+/// A size in points that fits a monitor of this size in pixels.
 fn clamped(points: (u32, u32), scale: f64, monitor: (u32, u32)) -> LogicalSize<f64> {
     let most = |pixels: u32| {
         if pixels == 0 {
@@ -226,7 +231,7 @@ fn clamped(points: (u32, u32), scale: f64, monitor: (u32, u32)) -> LogicalSize<f
     )
 }
 
-impl ApplicationHandler<Wake> for App {
+impl ApplicationHandler<WindowWake> for App {
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
         if self.open.is_some() {
             return;
@@ -241,7 +246,7 @@ impl ApplicationHandler<Wake> for App {
         self.check(made, event_loop);
     }
 
-    fn user_event(&mut self, _: &ActiveEventLoop, Wake: Wake) {
+    fn user_event(&mut self, _: &ActiveEventLoop, WindowWake: WindowWake) {
         if let Some(open) = &self.open {
             open.window.request_redraw();
         }

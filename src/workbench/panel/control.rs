@@ -3,10 +3,11 @@
 use crate::graph::param::{Kind, Param, Value};
 use egui::{Color32, DragValue, Response, RichText, Ui, WidgetInfo};
 
-/// Colour of what is not at its default.
+/// Colour of values that are not at their default.
 pub(crate) const CHANGED: Color32 = Color32::from_rgb(255, 196, 84);
 
-/// Shows a value under a title; edits go into it. `auto`: the number that a default stands for, if the graph chooses it.
+/// Shows a value under a title; edits go into it. `auto`: the number that a default stands for, if
+/// the graph chooses it.
 pub(crate) fn control(
     ui: &mut Ui,
     param: &Param,
@@ -101,7 +102,8 @@ pub(crate) fn control(
     }
 }
 
-/// A number that the graph chooses: `auto (78)`, and edits start from 78. Nothing for values that are no numbers.
+/// A number that the graph chooses: `auto (78)`, and edits start from 78. Nothing for values that
+/// are no numbers.
 fn automatic(
     ui: &mut Ui,
     param: &Param,
@@ -177,7 +179,7 @@ fn slider<N: egui::emath::Numeric>(
     response
 }
 
-/// A field for a number, by its name and not by what it shows.
+/// A field for a number, labelled with its name.
 pub(crate) fn spin(ui: &mut Ui, field: DragValue<'_>, name: &str) -> Response {
     let response = ui.add(field);
     response.widget_info(|| WidgetInfo::labeled(egui::WidgetType::DragValue, true, name));

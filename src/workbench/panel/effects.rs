@@ -4,14 +4,14 @@ use crate::graph::Evaluated;
 use crate::graph::effect::{Reason, Running, effective, idle, resting};
 use crate::shader::ShaderCompiler;
 use crate::workbench::Workbench;
+use crate::workbench::background::Background;
 use crate::workbench::engine::report::GraphInfo;
-use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::Ui;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// What the panel shows of parameters beside their values.
+/// Details of parameters for the panel.
 #[derive(Default)]
 pub struct Found {
     /// Parameters that change nothing, and why.
@@ -22,60 +22,44 @@ pub struct Found {
     pub resting: BTreeMap<String, Vec<(String, String)>>,
 }
 
-/// What they were found for: the graph as it runs, and the parameters that are set.
+/// Their inputs: the running graph, and the set parameters.
 type Of = (Arc<GraphInfo>, Vec<(String, String)>);
 
-/// What was found: side, what for, what.
-type Made = (usize, Of, Found);
-
-/// What is known of sides A and B.
+/// Details of sides A and B.
+#[derive(Default)]
 pub struct Effects {
     known: [Option<(Of, Found)>; 2],
     /// A side that waits, for what, and since when that has not changed.
     waiting: Option<(usize, Of, Instant)>,
-    working: bool,
     old: [bool; 2],
-    made: (Sender<Made>, Receiver<Made>),
-}
-
-impl Default for Effects {
-    fn default() -> Effects {
-        Effects {
-            known: [None, None],
-            waiting: None,
-            working: false,
-            old: [false; 2],
-            made: unbounded(),
-        }
-    }
+    work: Background<(usize, Of), Found>,
 }
 
 /// How long nothing must change: it must not keep a frame waiting.
 const QUIET: Duration = Duration::from_millis(400);
 
 impl Effects {
-    /// What is known of a side, be it of the values before.
+    /// The details of a side, possibly of earlier values.
     pub fn of(&self, side: usize) -> Option<&Found> {
         self.known[side].as_ref().map(|k| &k.1)
     }
 
-    /// Whether what is known of a side is of other values than the present ones.
+    /// Whether the details of a side are of earlier values.
     pub fn is_old(&self, side: usize) -> bool {
         self.old[side]
     }
 
     /// Whether something is about to come.
     pub fn awaits(&self) -> bool {
-        self.working || self.waiting.is_some()
+        self.work.is_working() || self.waiting.is_some()
     }
 }
 
 impl Workbench {
     /// Begins with the side that is out of date.
     pub(crate) fn find_effects(&mut self, ui: &Ui) {
-        while let Ok((side, of, found)) = self.effects.made.1.try_recv() {
-            self.effects.working = false;
-            self.effects.known[side] = Some((of, found));
+        while let Some(((side, of), found)) = self.effects.work.take() {
+            self.effects.known[side] = Some((of, found.unwrap_or_default()));
             // The panel may be painted already, and nothing else may ask for another frame.
             ui.ctx().request_repaint();
         }
@@ -90,9 +74,9 @@ impl Workbench {
                 .is_some_and(|k| same(&k.0, &of));
             (!is_known).then_some((side, of))
         });
-        // What is asked for and does not run yet counts as unknown too.
+        // A request that does not run yet counts as unknown.
         let old =
-            [0, 1].map(|side| unknown[side].is_some() || self.sides[side].behind(self.sent_number));
+            [0, 1].map(|side| unknown[side].is_some() || self.sides[side].behind(self.sent.number));
         if std::mem::replace(&mut self.effects.old, old) != old {
             ui.ctx().request_repaint();
         }
@@ -111,18 +95,21 @@ impl Workbench {
                 .effects
                 .waiting
                 .insert(waiting.unwrap_or((side, of.clone(), Instant::now())));
-        if self.effects.working || since.elapsed() < QUIET {
+        if self.effects.work.is_working() || since.elapsed() < QUIET {
             ui.ctx().request_repaint_after(QUIET);
             return;
         }
-        (self.effects.working, self.effects.waiting) = (true, None);
-        let (out, wake) = (self.effects.made.0.clone(), self.wake.clone());
-        let (folder, cache) = (self.home.folders().shaders, self.home.cache.clone());
-        std::thread::spawn(move || {
-            let found = find(&of, &ShaderCompiler::new(&folder, cache.as_deref()));
-            let _ = out.send((side, of, found));
-            wake();
-        });
+        self.effects.waiting = None;
+        let (folder, cache) = (
+            self.setup.home.folders().shaders,
+            self.setup.home.cache.clone(),
+        );
+        let input = of.clone();
+        self.effects
+            .work
+            .start((side, of), &self.setup.wake, move || {
+                find(&input, &ShaderCompiler::new(&folder, cache.as_deref()))
+            });
     }
 }
 
@@ -130,7 +117,7 @@ fn find((info, set): &Of, compiler: &ShaderCompiler) -> Found {
     let graph = &info.graph;
     let mut params = graph.params.clone();
     for (name, text) in set {
-        // What is wrong with a value is told where it is built.
+        // The build reports wrong values.
         let _ = params.set(name, text);
     }
     let set = Evaluated::new(graph, &params, info.variables.clone());

@@ -1,4 +1,4 @@
-//! The panel of parameters, made from what the graph declares: nothing here knows any of them.
+//! The panel of parameters, made from the graph's declarations alone.
 
 pub(crate) mod control;
 pub(crate) mod effects;
@@ -15,15 +15,17 @@ use egui::{RichText, Ui};
 /// What of the panel is not part of the experiment.
 #[derive(Default)]
 pub struct Panel {
+    /// The side shown: 0 is A, 1 is B.
+    pub side: usize,
     /// Text that names, groups or help must hold.
     pub search: String,
-    /// Show only what is not at its default.
+    /// Whether only changed parameters are shown.
     pub only_changed: bool,
     /// Whether it had them when it was shown last: Esc has taken them by then.
     pub typing: bool,
 }
 
-/// What the rows of a side are made from.
+/// The inputs of a side's rows.
 struct Shown<'a> {
     graph: &'a Graph,
     found: Option<&'a Found>,
@@ -96,7 +98,7 @@ impl Panel {
                     0 => RichText::new(title),
                     n => RichText::new(format!("{title} ({n})")).color(CHANGED),
                 };
-                // What a search opens is folded again after it, as it was.
+                // Groups that a search opens are folded again after it.
                 let header =
                     egui::CollapsingHeader::new(title).id_salt((searching, "group", number));
                 header.default_open(searching).show(ui, |ui| {
@@ -138,7 +140,7 @@ impl Panel {
                     side.params.clear();
                 }
                 ui.checkbox(&mut self.only_changed, "changed")
-                    .on_hover_text("Only what is not at its default");
+                    .on_hover_text("Only parameters that are not at their default");
                 let clear = ui.add_enabled(
                     !self.search.is_empty(),
                     egui::Button::new("×").small().frame(false),
@@ -187,7 +189,7 @@ impl Shown<'_> {
             .filter_map(|p| self.found?.idle.get(&p.0));
         let needs: Vec<&(String, String)> = reasons.flat_map(|r| &r.needs).collect();
         let count = |need: &(String, String)| needs.iter().filter(|n| **n == need).count();
-        // Of several, the first.
+        // The first of several.
         let Some((name, option)) = needs.iter().rev().max_by_key(|n| count(n)) else {
             return;
         };
@@ -248,7 +250,8 @@ impl Shown<'_> {
     }
 }
 
-/// A parameter that another graph has; a button goes there, where the graph's text begins with its name.
+/// A parameter that another graph has; a button goes there, where the graph's text begins with its
+/// name.
 fn elsewhere(ui: &mut Ui, name: &str, title: &str, instead: &str, side: &mut SideRequest) {
     ui.horizontal(|ui| {
         ui.add_visible(false, egui::Button::new("↺").small().frame(false));
@@ -304,7 +307,7 @@ fn matches(graph: &Graph, param: &Param, needle: &str) -> bool {
     needle.is_empty() || texts.iter().any(|text| folded(text).contains(needle))
 }
 
-/// Whether a value is another than the default; where the pointer is is nobody's setting.
+/// Whether a value differs from the default. The pointer's position is no setting.
 fn is_changed(graph: &Graph, side: &SideRequest, param: &Param) -> bool {
     edit::value(side, param) != param.default && graph.pointer.as_ref() != Some(&param.name)
 }
@@ -330,7 +333,7 @@ fn help(ui: &mut Ui, param: &Param, idle: Option<&Reason>) {
         facts.push(param.unit.clone());
     }
     if param.is_compiled() {
-        facts.push("a constant of its shaders: changing it builds them anew".into());
+        facts.push("a constant of its shaders: a change compiles them again".into());
     }
     ui.weak(facts.join(", "));
 }

@@ -39,7 +39,7 @@ pub struct Shown {
     pub bytes: Arc<Vec<u8>>,
 }
 
-/// A map of differences and what it says as numbers.
+/// A map of differences and its statistics.
 pub struct Map {
     /// RGBA.
     pub bytes: Arc<Vec<u8>>,

@@ -1,54 +1,66 @@
 //! A and B compared, on a thread.
 
-use super::compare::{self, MODES, Mode, Shown};
-use crate::workbench::engine::guard::guarded;
-use crate::workbench::{ComparisonOf, Side, Workbench};
+use super::compare::{self, MODES, Map, Mode, Shown};
+use crate::workbench::background::Background;
+use crate::workbench::{Side, Workbench};
 use std::sync::Arc;
+
+/// The inputs of a comparison: mode, gain, pixels of A, pixels of B.
+type Inputs = (Mode, u32, Arc<Vec<u8>>, Arc<Vec<u8>>);
+
+/// The comparison of A and B.
+#[derive(Default)]
+pub(crate) struct Comparison {
+    pub(crate) shown: Option<(Mode, Map)>,
+    /// The inputs of the last one.
+    pub(crate) of: Option<Inputs>,
+    /// Maps by mode; no map if the pictures cannot be compared.
+    pub(crate) work: Background<Mode, Option<Map>>,
+}
 
 impl Workbench {
     /// Works out the map of differences on a thread, one at a time.
     pub(crate) fn compare(&mut self) {
         let mode = self.view.mode;
-        if !matches!(mode, Mode::Difference | Mode::Perceived) || self.comparing {
+        if !matches!(mode, Mode::Difference | Mode::Perceived) || self.comparison.work.is_working()
+        {
             return;
         }
         let (Some(a), Some(b)) = (shown(&self.sides[0]), shown(&self.sides[1])) else {
             return;
         };
         let of = (mode, self.view.gain, a.bytes.clone(), b.bytes.clone());
-        let same = |o: &ComparisonOf| {
+        let same = |o: &Inputs| {
             (o.0, o.1) == (of.0, of.1) && Arc::ptr_eq(&o.2, &of.2) && Arc::ptr_eq(&o.3, &of.3)
         };
-        if self.comparison_of.as_ref().is_some_and(same) {
+        if self.comparison.of.as_ref().is_some_and(same) {
             return;
         }
-        self.comparison_of = Some(of);
-        self.comparing = true;
-        let (out, wake, gain) = (self.compared.0.clone(), self.wake.clone(), self.view.gain);
-        std::thread::spawn(move || {
-            let map = || match mode {
+        self.comparison.of = Some(of);
+        let gain = self.view.gain;
+        self.comparison
+            .work
+            .start(mode, &self.setup.wake, move || match mode {
                 Mode::Difference => compare::difference(&a, &b, gain),
                 _ => compare::flip(&a, &b),
-            };
-            let _ = out.send((mode, guarded(map).ok().flatten()));
-            wake();
-        });
+            });
     }
 
-    /// Writes what the comparison shows, pixel for pixel: the map, or A and B as they are put together.
+    /// Writes the shown comparison pixel for pixel: the map, or A and B as they are combined.
     pub(crate) fn save_comparison(&mut self) {
         let (Some(a), Some(b)) = (shown(&self.sides[0]), shown(&self.sides[1])) else {
-            self.status = "the pictures move: they are saved when they rest".into();
+            self.messages.status = "the pictures move: they are saved when they rest".into();
             return;
         };
         let map = self
             .comparison
+            .shown
             .as_ref()
             .filter(|(mode, _)| *mode == self.view.mode)
             .map(|(_, map)| map);
         let picture = match (self.view.mode, map) {
             (Mode::Difference | Mode::Perceived, None) => {
-                self.status = "the comparison is still being worked out".into();
+                self.messages.status = "the comparison is still being worked out".into();
                 return;
             }
             (_, Some(map)) => Shown {
@@ -70,12 +82,17 @@ impl Workbench {
                     .map_err(std::io::Error::other)
             })
             .map(|()| bytes.into_inner());
-        self.export(&format!("{}-{}", self.name, mode), "png", written);
+        self.export(
+            &format!("{}-{}", self.experiment.name, mode),
+            "png",
+            written,
+        );
     }
 
     pub(crate) fn comparison_text(&self) -> Option<String> {
         let (mode, map) = self
             .comparison
+            .shown
             .as_ref()
             .filter(|(mode, _)| *mode == self.view.mode)?;
         let share = 100.0 * map.differing as f64 / f64::from((map.size[0] * map.size[1]).max(1));

@@ -1,7 +1,7 @@
-//! The picture in the middle of the window: how it is shown, moved, compared, and what is written on it.
+//! The picture in the middle of the window: display, camera, comparison and overlays.
 
 pub mod compare;
-mod difference;
+pub(super) mod difference;
 pub(crate) mod motion;
 mod overlay;
 pub(crate) mod view;

@@ -14,7 +14,8 @@ pub enum Mode {
     Fly,
 }
 
-/// Moves the camera by what happened over the picture. `size` is the scene's diagonal, m; whether it moved.
+/// Moves the camera by what happened over the picture. `size` is the scene's diagonal, m; whether
+/// it moved.
 pub fn steer(
     ui: &Ui,
     response: &egui::Response,
@@ -153,7 +154,7 @@ mod tests {
     fn dragging_right_turns_the_hand_held_camera_so_that_the_picture_follows() {
         let mut c = camera();
         turn(&mut c, -0.1, 0.0);
-        // A negative yaw is clockwise from above: what was in the middle moves to the left.
+        // A negative yaw is clockwise from above: the middle moves to the left.
         assert!(c.target.x > 0.0);
     }
 }

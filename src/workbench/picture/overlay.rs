@@ -6,7 +6,7 @@ use crate::workbench::Workbench;
 use egui::{Painter, Rect};
 
 impl Workbench {
-    /// Draws the times of what is shown: the whole picture, and the part where B is.
+    /// Draws the times of the shown pictures: of A, and of B in its part.
     pub(crate) fn timers(&mut self, painter: &Painter, a: Rect, b: Option<Rect>) {
         if self.view.timers == Rows::None {
             return;
@@ -26,7 +26,7 @@ impl Workbench {
 
     fn timers_of(&mut self, context: &egui::Context, side: usize) -> Timers {
         let both = self.desired.sides[1].is_some();
-        let means = self.times.means(context, side, both);
+        let means = self.tabs.times.means(context, side, both);
         let (Some(info), Some(picture)) = (&self.sides[side].info, &self.sides[side].picture)
         else {
             return Timers::default();
@@ -45,7 +45,7 @@ impl Workbench {
         if self.desired.sides[1].is_some() {
             timers.title[0].insert_str(0, ["A: ", "B: "][side.min(1)]);
         }
-        if let Some((metric, error)) = self.chart.known_error(side, self.sent_number) {
+        if let Some((metric, error)) = self.tabs.chart.known_error(side, self.sent.number) {
             timers.title.push(format!("{metric} {error:.3e}"));
         }
         (timers.total, timers.statistic) = (means.total, "mean");

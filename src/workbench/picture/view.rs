@@ -1,4 +1,4 @@
-//! The picture in the viewport: A, B, or both, and what the mouse does there.
+//! The picture in the viewport: A, B, or both, and its mouse controls.
 
 use super::compare::{MODES, Mode};
 use super::motion;
@@ -16,7 +16,7 @@ pub struct View {
     pub split: f32,
     /// Whether B is shown when flipping.
     pub flipped: bool,
-    /// What is typed as the file of the sky's picture.
+    /// Text of the field for the sky's picture.
     pub picture: String,
     /// The times that are on the picture.
     pub timers: Rows,
@@ -51,7 +51,7 @@ impl Default for View {
     }
 }
 
-/// What is around the picture.
+/// Colour around the picture.
 const GROUND: Color32 = Color32::from_gray(38);
 
 const WHOLE: Rect = Rect {
@@ -59,7 +59,8 @@ const WHOLE: Rect = Rect {
     max: Pos2 { x: 1.0, y: 1.0 },
 };
 
-/// The largest rectangle of the picture's shape, never enlarged by less than whole pixels when it is small.
+/// The largest rectangle of the picture's shape, never enlarged by less than whole pixels when it
+/// is small.
 pub fn fit(area: Rect, size: [u32; 2], scale: f32) -> Rect {
     let size = Vec2::new(size[0].max(1) as f32, size[1].max(1) as f32) / scale;
     let factor = (area.width() / size.x).min(area.height() / size.y);
@@ -122,7 +123,7 @@ impl Workbench {
         // Another ground than a picture's black: its edge is seen.
         painter.rect_filled(area, 0.0, GROUND);
         let scale = ui.ctx().pixels_per_point();
-        self.area = [
+        self.layout.area = [
             (area.width() * scale) as u32,
             (area.height() * scale) as u32,
         ];
@@ -209,6 +210,7 @@ impl Workbench {
             Mode::Difference | Mode::Perceived => {
                 if self
                     .comparison
+                    .shown
                     .as_ref()
                     .is_some_and(|(mode, _)| *mode == self.view.mode)
                 {
@@ -319,7 +321,7 @@ impl Workbench {
                 response,
                 camera,
                 self.view.steering,
-                self.diagonal,
+                self.scene.diagonal,
                 self.view.speed,
             );
         }

@@ -28,7 +28,8 @@ impl Zoom {
         self.factor == 1.0
     }
 
-    /// Where the picture is, which would fit into `fitting`; texels from twice their size on have whole sizes.
+    /// Where the picture is, which would fit into `fitting`; texels from twice their size on have
+    /// whole sizes.
     pub fn place(&self, fitting: Rect, width: u32, scale: f32) -> Rect {
         if self.is_whole() {
             return fitting;
@@ -41,8 +42,8 @@ impl Zoom {
         Rect::from_min_size((min.to_vec2() * scale).round().to_pos2() / scale, size)
     }
 
-    /// Ctrl and the wheel change the size about the pointer, Ctrl and a drag move, a double click shows all. Whether the
-    /// mouse is taken from the camera.
+    /// Ctrl and the wheel change the size about the pointer, Ctrl and a drag move, a double click
+    /// shows all. Whether the mouse is taken from the camera.
     pub fn steer(&mut self, ui: &Ui, response: &Response, shown: Rect) -> bool {
         if response.double_clicked() && !self.is_whole() {
             *self = Zoom::default();
@@ -60,7 +61,7 @@ impl Zoom {
             if self.factor == 1.0 {
                 *self = Zoom::default();
             } else {
-                // What is under the pointer stays there.
+                // The point under the pointer stays there.
                 let grown = self.factor / before;
                 self.centre = under + (self.centre - under) / grown;
             }
@@ -116,6 +117,7 @@ pub fn pixel_at(shown: Rect, size: [u32; 2], at: Pos2) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::graph::run::FrameTimes;
     use std::sync::Arc;
 
     #[test]
@@ -146,10 +148,7 @@ mod tests {
             asked: 0,
             bytes: Some(Arc::new(vec![0, 0, 0, 255, 255, 188, 0, 255])),
             shared: None,
-            passes: Vec::new(),
-            asleep: Vec::new(),
-            gpu_ms: 0.0,
-            cpu_ms: 0.0,
+            times: FrameTimes::default(),
         };
         let text = pixel_text(&picture, Vec2::new(1.5, 0.5));
         assert_eq!(

@@ -20,10 +20,12 @@ impl Workbench {
     /// Buttons for the kept cameras of the scene, and a field to keep this one.
     pub(crate) fn bookmark_rows(&mut self, ui: &mut Ui) {
         let folder = self
+            .setup
+            .home
             .root
             .join("captures/cameras")
             .join(short(&self.desired.scene));
-        let known = self.bookmarks.known.take().filter(|k| k.0 == folder);
+        let known = self.tabs.bookmarks.known.take().filter(|k| k.0 == folder);
         let files = known.map_or_else(|| ron_files(&folder), |k| k.1);
         let (mut go, mut remove) = (None, None);
         if !files.is_empty() {
@@ -43,7 +45,7 @@ impl Workbench {
         }
         let mut keep = false;
         ui.horizontal(|ui| {
-            let field = egui::TextEdit::singleline(&mut self.bookmarks.name)
+            let field = egui::TextEdit::singleline(&mut self.tabs.bookmarks.name)
                 .hint_text("name")
                 .desired_width(100.0);
             let field = ui.add(field);
@@ -51,48 +53,50 @@ impl Workbench {
                 egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "camera name")
             });
             let enter = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-            let named = !self.bookmarks.name.trim().is_empty();
+            let named = !self.tabs.bookmarks.name.trim().is_empty();
             let button = ui.add_enabled(named, egui::Button::new("keep camera").small());
             keep = button
                 .on_hover_text("Keeps this camera in captures/cameras")
                 .clicked()
                 || enter && named;
-            ui.weak(&self.bookmarks.said);
+            ui.weak(&self.tabs.bookmarks.said);
         });
-        self.bookmarks.known = Some((folder.clone(), files));
+        self.tabs.bookmarks.known = Some((folder.clone(), files));
         if let Some(file) = go {
             self.go_to(&file);
         }
         if let Some(file) = remove {
-            self.bookmarks.said = match std::fs::remove_file(&file) {
+            self.tabs.bookmarks.said = match std::fs::remove_file(&file) {
                 Ok(()) => String::new(),
                 Err(e) => format!("'{}' stays: {e}", file.display()),
             };
-            self.bookmarks.known = None;
+            self.tabs.bookmarks.known = None;
         }
         if keep {
-            self.bookmarks.said = match self.keep_camera(&folder) {
+            self.tabs.bookmarks.said = match self.keep_camera(&folder) {
                 Ok(name) => format!("kept as {name}"),
                 Err(e) => e.to_string(),
             };
-            self.bookmarks.known = None;
+            self.tabs.bookmarks.known = None;
         }
     }
 
     fn keep_camera(&mut self, folder: &std::path::Path) -> Result<String, LabError> {
-        let name = checked_name(self.bookmarks.name.trim())?;
+        let name = checked_name(self.tabs.bookmarks.name.trim())?;
         let Some(camera) = &self.desired.camera else {
             return Err(LabError::Request("there is no camera yet".into()));
         };
         let mut path = CameraPath::default();
         camera_path::insert(&mut path, Key::new(0.0, &PlacedCamera::from(camera)))?;
         camera_path::write(&path, &folder.join(format!("{name}.ron")), false)?;
-        self.bookmarks.name.clear();
+        self.tabs.bookmarks.name.clear();
         Ok(name)
     }
 
     fn go_to(&mut self, file: &std::path::Path) {
-        let Some(scene) = &self.scene else { return };
+        let Some(scene) = &self.scene.loaded else {
+            return;
+        };
         match CameraPath::read(file) {
             Ok(path) => {
                 if let Some(key) = path.keys.first() {
@@ -104,7 +108,7 @@ impl Workbench {
                 }
             }
             Err(errors) => {
-                self.bookmarks.said = errors.first().map_or(String::new(), ToString::to_string)
+                self.tabs.bookmarks.said = errors.first().map_or(String::new(), ToString::to_string)
             }
         }
     }

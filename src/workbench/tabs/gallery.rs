@@ -4,20 +4,18 @@ use super::Tab;
 use crate::experiment::{Experiment, checked_name};
 use crate::lab::LabError;
 use crate::results::capture::{self, Summary};
+use crate::workbench::background::Background;
 use crate::workbench::desired::save;
 use crate::workbench::engine::Order;
 use crate::workbench::{Workbench, short};
-use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::{ColorImage, TextureHandle, Ui, Vec2};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 pub(crate) const TAB: Tab = Tab::new("Save", |workbench, ui, _| workbench.gallery_tab(ui));
 
-/// A picture's file and its small picture, if it could be read.
-type Thumbnail = (PathBuf, Option<ColorImage>);
-
 /// State of this tab.
+#[derive(Default)]
 pub struct Gallery {
     name: String,
     /// A name that is taken, waiting for a second click.
@@ -29,27 +27,10 @@ pub struct Gallery {
     resources: Vec<String>,
     captures: Option<Vec<Summary>>,
     thumbnails: HashMap<PathBuf, Option<TextureHandle>>,
-    made: (Sender<Thumbnail>, Receiver<Thumbnail>),
-    replays: (Sender<String>, Receiver<String>),
+    /// Small pictures by file, if it can be read.
+    decoding: Background<PathBuf, Option<ColorImage>>,
+    replays: Background<(), String>,
     replayed: String,
-}
-
-impl Default for Gallery {
-    fn default() -> Self {
-        Gallery {
-            name: String::new(),
-            taken: None,
-            saved: None,
-            captured: None,
-            capture_name: String::new(),
-            resources: Vec::new(),
-            captures: None,
-            thumbnails: HashMap::new(),
-            made: unbounded(),
-            replays: unbounded(),
-            replayed: String::new(),
-        }
-    }
 }
 
 impl Gallery {
@@ -81,78 +62,85 @@ impl Workbench {
     }
 
     fn save_row(&mut self, ui: &mut Ui) {
-        if self.gallery.name.is_empty() {
-            self.gallery.name.clone_from(&self.name);
+        if self.tabs.gallery.name.is_empty() {
+            self.tabs.gallery.name.clone_from(&self.experiment.name);
         }
         ui.horizontal(|ui| {
-            let edit = egui::TextEdit::singleline(&mut self.gallery.name).desired_width(140.0);
+            let edit = egui::TextEdit::singleline(&mut self.tabs.gallery.name).desired_width(140.0);
             let field = ui
                 .add(edit)
-                .on_hover_text("Written to configs/NAME.ron: only what differs from the defaults");
+                .on_hover_text("Written to configs/NAME.ron, without values at their default");
             field.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "experiment name")
             });
             if field.changed() {
-                (self.gallery.taken, self.gallery.saved) = (None, None);
+                (self.tabs.gallery.taken, self.tabs.gallery.saved) = (None, None);
             }
-            let again = self.gallery.taken.is_some();
+            let again = self.tabs.gallery.taken.is_some();
             let text = match (again, self.desired.sides[1].is_some()) {
                 (true, _) => "replace it",
                 (false, false) => "save",
-                // The side whose parameters are shown.
-                (false, true) => ["save A", "save B"][self.panel_side.min(1)],
+                // The side of the shown parameters.
+                (false, true) => ["save A", "save B"][self.panel.side.min(1)],
             };
             if ui.button(text).on_hover_text("Ctrl S").clicked() {
                 self.save(again);
             }
         });
-        if let Some(taken) = &self.gallery.taken {
+        if let Some(taken) = &self.tabs.gallery.taken {
             ui.weak(format!(
                 "configs/{taken}.ron exists; replacing keeps its comments"
             ));
         }
         said(
             ui,
-            self.gallery
+            self.tabs
+                .gallery
                 .saved
                 .as_ref()
-                .filter(|_| self.gallery.taken.is_none()),
+                .filter(|_| self.tabs.gallery.taken.is_none()),
         );
     }
 
-    /// Saves what side A (or B, when the panel shows it) says. An existing file is only replaced when asked for.
+    /// Saves side A, or B if the panel shows it. An existing file is replaced only after a second
+    /// click.
     pub(crate) fn save(&mut self, replace: bool) {
-        if self.gallery.name.is_empty() {
-            self.gallery.name.clone_from(&self.name);
+        if self.tabs.gallery.name.is_empty() {
+            self.tabs.gallery.name.clone_from(&self.experiment.name);
         }
-        let result = self.save_as(&self.gallery.name.clone(), replace);
+        let result = self.save_as(&self.tabs.gallery.name.clone(), replace);
         match result {
             Ok(path) => {
-                self.name = short(&path.to_string_lossy());
+                self.experiment.name = short(&path.to_string_lossy());
                 // The name as it was corrected.
-                (self.gallery.taken, self.gallery.name) = (None, self.name.clone());
-                self.status = format!("saved {}", path.display());
-                self.gallery.saved = Some((true, self.status.clone()));
-                self.written = Some(path.clone());
+                (self.tabs.gallery.taken, self.tabs.gallery.name) =
+                    (None, self.experiment.name.clone());
+                self.messages.status = format!("saved {}", path.display());
+                self.tabs.gallery.saved = Some((true, self.messages.status.clone()));
+                self.experiment.written = Some(path.clone());
                 self.event(
                     "saved",
                     serde_json::json!({ "path": path.display().to_string() }),
                 );
             }
             Err(e) => {
-                let taken = checked_name(&self.gallery.name)
+                let taken = checked_name(&self.tabs.gallery.name)
                     .ok()
                     .filter(|n| self.experiment_path(n).exists());
-                self.gallery.taken = taken.filter(|_| !replace);
-                self.status = e.to_string();
-                self.gallery.saved = Some((false, self.status.clone()));
+                self.tabs.gallery.taken = taken.filter(|_| !replace);
+                self.messages.status = e.to_string();
+                self.tabs.gallery.saved = Some((false, self.messages.status.clone()));
                 self.event("not saved", serde_json::json!({ "why": e.to_string() }));
             }
         }
     }
 
     fn experiment_path(&self, name: &str) -> PathBuf {
-        self.root.join("configs").join(format!("{name}.ron"))
+        self.setup
+            .home
+            .root
+            .join("configs")
+            .join(format!("{name}.ron"))
     }
 
     fn save_as(&self, name: &str, replace: bool) -> Result<PathBuf, LabError> {
@@ -160,10 +148,10 @@ impl Workbench {
         if let Some(missing) = self.missing_scene() {
             return Err(LabError::Request(format!("not saved: {missing}")));
         }
-        let side = self.desired.sides[self.panel_side]
+        let side = self.desired.sides[self.panel.side]
             .as_ref()
             .or(self.desired.sides[0].as_ref());
-        let info = self.sides[self.panel_side]
+        let info = self.sides[self.panel.side]
             .info
             .as_ref()
             .or(self.sides[0].info.as_ref());
@@ -177,7 +165,13 @@ impl Workbench {
             .as_ref()
             .map_or(self.desired.clock.at, |p| p.time);
         let side = save::without_pointer(side, info.graph.pointer.as_deref());
-        let experiment = save::experiment(&self.desired, &side, &name, time, self.scene.as_deref());
+        let experiment = save::experiment(
+            &self.desired,
+            &side,
+            &name,
+            time,
+            self.scene.loaded.as_deref(),
+        );
         let path = self.experiment_path(&name);
         crate::experiment::write(&experiment, &info.graph.params, &path, replace)?;
         Ok(path)
@@ -185,7 +179,7 @@ impl Workbench {
 
     fn capture_rows(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
-            let edit = egui::TextEdit::singleline(&mut self.gallery.capture_name).hint_text(&self.name);
+            let edit = egui::TextEdit::singleline(&mut self.tabs.gallery.capture_name).hint_text(&self.experiment.name);
             let field = ui.add(edit.desired_width(140.0));
             field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "capture name"));
             let hover = "Renders afresh and keeps pictures, sources, settings and times in captures/NAME (F12)";
@@ -193,31 +187,29 @@ impl Workbench {
                 self.capture();
             }
         });
-        said(ui, self.gallery.captured.as_ref());
+        said(ui, self.tabs.gallery.captured.as_ref());
         let Some(info) = self.sides[0].info.clone() else {
             return;
         };
-        egui::CollapsingHeader::new(format!("resources ({})", self.gallery.resources.len())).show(
-            ui,
-            |ui| {
-                ui.weak("kept as EXR beside the picture");
+        egui::CollapsingHeader::new(format!("resources ({})", self.tabs.gallery.resources.len()))
+            .show(ui, |ui| {
+                ui.weak("kept as EXR next to the picture");
                 for (name, _) in &info.graph.textures {
-                    let mut chosen = self.gallery.resources.contains(name);
+                    let mut chosen = self.tabs.gallery.resources.contains(name);
                     if ui.checkbox(&mut chosen, name).changed() {
-                        self.gallery.resources.retain(|r| r != name);
+                        self.tabs.gallery.resources.retain(|r| r != name);
                         if chosen {
-                            self.gallery.resources.push(name.clone());
+                            self.tabs.gallery.resources.push(name.clone());
                         }
                     }
                 }
-            },
-        );
+            });
     }
 
     /// Captures the side that the panel shows.
     pub(crate) fn capture(&mut self) {
-        let name = match self.gallery.capture_name.trim() {
-            "" => self.name.clone(),
+        let name = match self.tabs.gallery.capture_name.trim() {
+            "" => self.experiment.name.clone(),
             name => name.to_string(),
         };
         let checked = checked_name(&name)
@@ -228,46 +220,49 @@ impl Workbench {
             });
         match checked {
             Ok(name) => {
-                self.status = format!("capturing {name}");
-                if !self.gallery.capture_name.trim().is_empty() {
-                    self.gallery.capture_name.clone_from(&name);
+                self.messages.status = format!("capturing {name}");
+                if !self.tabs.gallery.capture_name.trim().is_empty() {
+                    self.tabs.gallery.capture_name.clone_from(&name);
                 }
-                self.gallery.captured = Some((true, self.status.clone()));
+                self.tabs.gallery.captured = Some((true, self.messages.status.clone()));
                 self.engine.order(Order::Capture(
-                    self.panel_side,
+                    self.panel.side,
                     name,
-                    self.gallery.resources.clone(),
+                    self.tabs.gallery.resources.clone(),
                     self.view.timers,
                 ));
             }
             Err(e) => {
-                self.status = e.to_string();
-                self.gallery.captured = Some((false, self.status.clone()));
+                self.messages.status = e.to_string();
+                self.tabs.gallery.captured = Some((false, self.messages.status.clone()));
                 self.event(
                     "captured",
-                    serde_json::json!({ "ok": false, "text": self.status }),
+                    serde_json::json!({ "ok": false, "text": self.messages.status }),
                 );
             }
         }
     }
 
     fn gallery_rows(&mut self, ui: &mut Ui) {
-        let folder = self.root.join("captures");
-        while let Ok((path, image)) = self.gallery.made.1.try_recv() {
+        let folder = self.setup.home.root.join("captures");
+        while let Some((path, image)) = self.tabs.gallery.decoding.take() {
+            let image = image.ok().flatten();
             let handle = image.map(|i| {
                 ui.ctx()
                     .load_texture(path.to_string_lossy(), i, egui::TextureOptions::LINEAR)
             });
-            self.gallery.thumbnails.insert(path, handle);
+            self.tabs.gallery.thumbnails.insert(path, handle);
         }
-        while let Ok(text) = self.gallery.replays.1.try_recv() {
+        while let Some(((), text)) = self.tabs.gallery.replays.take() {
+            let text = text.unwrap_or_else(|panic| panic);
             self.event("replayed", serde_json::json!({ "text": text }));
-            self.gallery.replayed = text;
+            self.tabs.gallery.replayed = text;
         }
         if ui.small_button("refresh").clicked() {
-            self.gallery.forget();
+            self.tabs.gallery.forget();
         }
         let captures = self
+            .tabs
             .gallery
             .captures
             .get_or_insert_with(|| capture::list(&folder))
@@ -275,8 +270,8 @@ impl Workbench {
         if captures.is_empty() {
             ui.weak("none yet");
         }
-        if !self.gallery.replayed.is_empty() {
-            ui.label(&self.gallery.replayed);
+        if !self.tabs.gallery.replayed.is_empty() {
+            ui.label(&self.tabs.gallery.replayed);
         }
         egui::ScrollArea::vertical()
             .auto_shrink(false)
@@ -297,21 +292,19 @@ impl Workbench {
             ui.allocate_space(size);
             return;
         };
-        match self.gallery.thumbnails.get(path) {
+        match self.tabs.gallery.thumbnails.get(path) {
             Some(Some(handle)) => {
                 let image = egui::Image::from_texture((handle.id(), handle.size_vec2()));
                 ui.add(image.max_size(size));
             }
             Some(None) => drop(ui.allocate_space(size)),
             None => {
-                self.gallery.thumbnails.insert(path.clone(), None);
-                let (path, out, wake) =
-                    (path.clone(), self.gallery.made.0.clone(), self.wake.clone());
-                std::thread::spawn(move || {
-                    let image = small(&path);
-                    let _ = out.send((path, image));
-                    wake();
-                });
+                self.tabs.gallery.thumbnails.insert(path.clone(), None);
+                let file = path.clone();
+                self.tabs
+                    .gallery
+                    .decoding
+                    .start(path.clone(), &self.setup.wake, move || small(&file));
                 ui.allocate_space(size);
             }
         }
@@ -371,13 +364,13 @@ impl Workbench {
     fn load_capture(&mut self, summary: &Summary, graph: &str) {
         match Experiment::read(&summary.folder.join("experiment.ron")) {
             Ok(mut experiment) => {
-                let own = self.root.join("passes").join(graph);
+                let own = self.setup.home.root.join("passes").join(graph);
                 if own.is_file() {
                     experiment.graph = graph.to_string();
                 }
                 experiment.name.clone_from(&summary.name);
                 self.open(&experiment);
-                self.status = format!("loaded {}", summary.name);
+                self.messages.status = format!("loaded {}", summary.name);
             }
             Err(errors) => self.sides[0].errors = errors,
         }
@@ -385,32 +378,30 @@ impl Workbench {
 
     /// Replays by the program's own command, in a process of its own.
     fn replay(&mut self, folder: &Path) {
-        self.gallery.replayed = "replaying".into();
-        let (folder, out, wake) = (
-            folder.to_path_buf(),
-            self.gallery.replays.0.clone(),
-            self.wake.clone(),
-        );
+        self.tabs.gallery.replayed = "replaying".into();
+        let folder = folder.to_path_buf();
         let device = self.device.as_ref().map(|d| d.name.clone());
-        std::thread::spawn(move || {
-            let run = || -> std::io::Result<String> {
-                let mut command = std::process::Command::new(std::env::current_exe()?);
-                command.arg("replay").arg(&folder);
-                if let Some(device) = device {
-                    command.arg("--device").arg(device);
-                }
-                let output = command.output()?;
-                let text = [output.stdout, output.stderr].concat();
-                Ok(String::from_utf8_lossy(&text).into_owned())
-            };
-            let text = run().unwrap_or_else(|e| format!("cannot replay: {e}"));
-            let _ = out.send(text.trim().to_string());
-            wake();
-        });
+        self.tabs
+            .gallery
+            .replays
+            .start((), &self.setup.wake, move || {
+                let run = || -> std::io::Result<String> {
+                    let mut command = std::process::Command::new(std::env::current_exe()?);
+                    command.arg("replay").arg(&folder);
+                    if let Some(device) = device {
+                        command.arg("--device").arg(device);
+                    }
+                    let output = command.output()?;
+                    let text = [output.stdout, output.stderr].concat();
+                    Ok(String::from_utf8_lossy(&text).into_owned())
+                };
+                let text = run().unwrap_or_else(|e| format!("cannot replay: {e}"));
+                text.trim().to_string()
+            });
     }
 }
 
-/// How something ended, beside what began it.
+/// A result, next to the button that started it.
 fn said(ui: &mut Ui, result: Option<&(bool, String)>) {
     match result {
         Some((true, text)) => drop(ui.weak(text)),

@@ -22,7 +22,7 @@ type Show = fn(&mut Workbench, &mut Ui, &[TextureId]);
 pub(crate) struct Tab {
     pub(crate) title: &'static str,
     pub(crate) show: Show,
-    /// What stands in the middle of the window while the tab is open.
+    /// The middle of the window while the tab is open.
     pub(crate) middle: Show,
 }
 
@@ -51,3 +51,32 @@ pub(crate) const TABS: [Tab; 8] = [
     paths::TAB,
     gallery::TAB,
 ];
+
+/// The open tab, and the state of each.
+pub(crate) struct Tabs {
+    pub(crate) open: Tab,
+    pub(crate) times: times::Times,
+    pub(crate) chart: chart::Chart,
+    pub(crate) nodes: nodes::Nodes,
+    pub(crate) inspector: inspector::Inspector,
+    pub(crate) tables: tables::Tables,
+    pub(crate) paths: paths::Paths,
+    pub(crate) bookmarks: bookmarks::Bookmarks,
+    pub(crate) gallery: gallery::Gallery,
+}
+
+impl Default for Tabs {
+    fn default() -> Tabs {
+        Tabs {
+            open: surroundings::TAB,
+            times: Default::default(),
+            chart: Default::default(),
+            nodes: Default::default(),
+            inspector: Default::default(),
+            tables: Default::default(),
+            paths: Default::default(),
+            bookmarks: Default::default(),
+            gallery: Default::default(),
+        }
+    }
+}

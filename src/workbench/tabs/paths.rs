@@ -48,16 +48,16 @@ impl Workbench {
     }
 
     fn path_files(&mut self, ui: &mut Ui) {
-        let folder = self.root.join("configs/paths");
+        let folder = self.setup.home.root.join("configs/paths");
         ui.horizontal(|ui| {
             ui.menu_button("open", |ui| {
                 for file in ron_files(&folder) {
                     if ui.button(short(&file.to_string_lossy())).clicked() {
                         match CameraPath::read(&file) {
                             Ok(path) => {
-                                self.paths.path = path;
-                                self.paths.name = short(&file.to_string_lossy());
-                                self.paths.taken = false;
+                                self.tabs.paths.path = path;
+                                self.tabs.paths.name = short(&file.to_string_lossy());
+                                self.tabs.paths.taken = false;
                             }
                             Err(errors) => self.sides[0].errors = errors,
                         }
@@ -66,34 +66,37 @@ impl Workbench {
                 }
             });
             let edit =
-                ui.add(egui::TextEdit::singleline(&mut self.paths.name).desired_width(100.0));
+                ui.add(egui::TextEdit::singleline(&mut self.tabs.paths.name).desired_width(100.0));
             edit.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "path name")
             });
             if edit.changed() {
-                self.paths.taken = false;
+                self.tabs.paths.taken = false;
             }
-            let text = if self.paths.taken {
+            let text = if self.tabs.paths.taken {
                 "replace it"
             } else {
                 "save path"
             };
             if ui
-                .add_enabled(!self.paths.path.keys.is_empty(), egui::Button::new(text))
+                .add_enabled(
+                    !self.tabs.paths.path.keys.is_empty(),
+                    egui::Button::new(text),
+                )
                 .clicked()
             {
-                match self.save_path(self.paths.taken) {
+                match self.save_path(self.tabs.paths.taken) {
                     Ok(file) => {
-                        self.status = format!("saved {}", file.display());
+                        self.messages.status = format!("saved {}", file.display());
                         self.event(
                             "saved",
                             serde_json::json!({ "path": file.display().to_string() }),
                         );
-                        self.paths.taken = false;
+                        self.tabs.paths.taken = false;
                     }
                     Err(e) => {
-                        self.paths.taken = true;
-                        self.status = e.to_string();
+                        self.tabs.paths.taken = true;
+                        self.messages.status = e.to_string();
                     }
                 }
             }
@@ -102,14 +105,16 @@ impl Workbench {
 
     fn path_file(&self) -> Result<PathBuf, LabError> {
         Ok(self
+            .setup
+            .home
             .root
             .join("configs/paths")
-            .join(format!("{}.ron", checked_name(&self.paths.name)?)))
+            .join(format!("{}.ron", checked_name(&self.tabs.paths.name)?)))
     }
 
     fn save_path(&self, replace: bool) -> Result<PathBuf, LabError> {
         let file = self.path_file()?;
-        camera_path::write(&self.paths.path, &file, replace)?;
+        camera_path::write(&self.tabs.paths.path, &file, replace)?;
         Ok(file)
     }
 
@@ -120,16 +125,25 @@ impl Workbench {
                 .button("add key")
                 .on_hover_text("The camera as it stands now, a second after the last key");
             if let Some(camera) = self.desired.camera.as_ref().filter(|_| add.clicked()) {
-                let time = self.paths.path.keys.last().map_or(0.0, |k| k.time + 1.0);
+                let time = self
+                    .tabs
+                    .paths
+                    .path
+                    .keys
+                    .last()
+                    .map_or(0.0, |k| k.time + 1.0);
                 let key = Key::new(time, &PlacedCamera::from(camera));
-                if let Err(e) = camera_path::insert(&mut self.paths.path, key) {
-                    self.status = e.to_string();
+                if let Err(e) = camera_path::insert(&mut self.tabs.paths.path, key) {
+                    self.messages.status = e.to_string();
                 }
             }
-            let can = !self.paths.path.keys.is_empty();
-            let follow = ui.add_enabled(can, egui::Checkbox::new(&mut self.paths.follow, "follow"));
+            let can = !self.tabs.paths.path.keys.is_empty();
+            let follow = ui.add_enabled(
+                can,
+                egui::Checkbox::new(&mut self.tabs.paths.follow, "follow"),
+            );
             follow.on_hover_text("The camera follows the path in the scene's time; play starts it");
-            ui.checkbox(&mut self.paths.path.repeat, "repeat");
+            ui.checkbox(&mut self.tabs.paths.path.repeat, "repeat");
             ui.weak(format!("{now:.2} s"));
         });
         let mut remove = None;
@@ -138,7 +152,7 @@ impl Workbench {
         egui::ScrollArea::vertical()
             .max_height(240.0)
             .show(ui, |ui| {
-                for (i, key) in self.paths.path.keys.iter().enumerate() {
+                for (i, key) in self.tabs.paths.path.keys.iter().enumerate() {
                     ui.horizontal(|ui| {
                         let mut time = key.time;
                         let field = DragValue::new(&mut time).speed(0.05).suffix(" s");
@@ -157,22 +171,22 @@ impl Workbench {
                 }
             });
         if let Some((i, time)) = moved
-            && let Err(e) = camera_path::move_key(&mut self.paths.path, i, time)
+            && let Err(e) = camera_path::move_key(&mut self.tabs.paths.path, i, time)
         {
-            self.status = e.to_string();
+            self.messages.status = e.to_string();
         }
         if let Some(i) = remove {
-            camera_path::remove(&mut self.paths.path, i);
-            self.paths.follow &= !self.paths.path.keys.is_empty();
+            camera_path::remove(&mut self.tabs.paths.path, i);
+            self.tabs.paths.follow &= !self.tabs.paths.path.keys.is_empty();
         }
-        if let (Some(key), Some(scene)) = (go, &self.scene) {
+        if let (Some(key), Some(scene)) = (go, &self.scene.loaded) {
             let placed = PlacedCamera {
                 up: key.up,
                 ..PlacedCamera::new(key.eye, key.target, key.fov_y)
             };
             self.desired.camera = Some(Viewpoint::placed(&placed, scene).camera);
         }
-        self.desired.path = (self.paths.follow && !self.paths.path.keys.is_empty())
-            .then(|| self.paths.path.clone());
+        self.desired.path = (self.tabs.paths.follow && !self.tabs.paths.path.keys.is_empty())
+            .then(|| self.tabs.paths.path.clone());
     }
 }

@@ -3,9 +3,9 @@
 use crate::camera_path;
 use crate::lab::LabError;
 use crate::workbench::Workbench;
+use crate::workbench::background::{Background, Wake};
 use crate::workbench::desired::save;
 use crate::workbench::messages::{AMBER, RED};
-use crossbeam_channel::{Receiver, unbounded};
 use egui::{DragValue, ProgressBar, Ui};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -37,9 +37,9 @@ impl Default for Sequence {
 
 struct Running {
     child: Arc<Mutex<Child>>,
-    ended: Receiver<(bool, String)>,
+    ended: Background<(), (bool, String)>,
     folder: PathBuf,
-    /// Frames that are there, of so many.
+    /// Finished frames, of `frames`.
     done: usize,
     frames: usize,
     cancelled: bool,
@@ -78,14 +78,15 @@ impl Drop for Running {
 impl Workbench {
     /// Takes in the end of a sequence.
     pub(crate) fn poll_sequence(&mut self) {
-        let sequence = &mut self.paths.sequence;
+        let sequence = &mut self.tabs.paths.sequence;
         let Some(running) = &mut sequence.running else {
             return;
         };
         running.count();
-        let Ok((ok, text)) = running.ended.try_recv() else {
+        let Some(((), ended)) = running.ended.take() else {
             return;
         };
+        let (ok, text) = ended.unwrap_or_else(|panic| (false, panic));
         let text = match running.cancelled {
             true => format!(
                 "cancelled after {} of {} frames, which stay in {}",
@@ -96,12 +97,12 @@ impl Workbench {
         sequence.running = None;
         sequence.said = Some((ok, text.clone()));
         self.event("sequence", serde_json::json!({ "ok": ok, "text": text }));
-        self.status = text;
+        self.messages.status = text;
     }
 
     /// The section.
     pub(crate) fn sequence_rows(&mut self, ui: &mut Ui) {
-        let sequence = &mut self.paths.sequence;
+        let sequence = &mut self.tabs.paths.sequence;
         let idle = sequence.running.is_none();
         let mut render = false;
         ui.add_enabled_ui(idle, |ui| {
@@ -140,7 +141,7 @@ impl Workbench {
                 let cancel = egui::Button::new(name).small();
                 if ui
                     .add_enabled(!running.cancelled, cancel)
-                    .on_hover_text("The frames so far stay")
+                    .on_hover_text("Finished frames stay")
                     .clicked()
                 {
                     running.cancel();
@@ -161,7 +162,7 @@ impl Workbench {
             };
         }
         if render {
-            self.paths.sequence.said = match self.start_sequence() {
+            self.tabs.paths.sequence.said = match self.start_sequence() {
                 Ok(()) => None,
                 Err(e) => Some((false, e.to_string())),
             };
@@ -184,8 +185,13 @@ impl Workbench {
             .tempdir()
             .map_err(failed)?;
         let side = save::without_pointer(side, info.graph.pointer.as_deref());
-        let mut experiment =
-            save::experiment(&self.desired, &side, "sequence", 0.0, self.scene.as_deref());
+        let mut experiment = save::experiment(
+            &self.desired,
+            &side,
+            "sequence",
+            0.0,
+            self.scene.loaded.as_deref(),
+        );
         let scene = PathBuf::from(&experiment.scene);
         if scene.is_file() {
             experiment.scene = scene
@@ -196,12 +202,12 @@ impl Workbench {
         }
         let file = folder.path().join("sequence.ron");
         crate::experiment::write(&experiment, &info.graph.params, &file, false)?;
-        let Sequence { frames, rate, .. } = self.paths.sequence;
-        let to = self.root.join(&self.paths.sequence.folder);
+        let Sequence { frames, rate, .. } = self.tabs.paths.sequence;
+        let to = self.setup.home.root.join(&self.tabs.paths.sequence.folder);
         let mut command = Command::new(std::env::current_exe().map_err(failed)?);
         command
-            .current_dir(&self.root)
-            .env("CONELAB_HOME", &self.root);
+            .current_dir(&self.setup.home.root)
+            .env("CONELAB_HOME", &self.setup.home.root);
         command.arg("render").arg(&file).arg("--sequence").arg(&to);
         command.args([
             "--frames",
@@ -209,9 +215,9 @@ impl Workbench {
             "--step",
             &(1.0 / rate).to_string(),
         ]);
-        if !self.paths.path.keys.is_empty() {
+        if !self.tabs.paths.path.keys.is_empty() {
             let path = folder.path().join("path.ron");
-            camera_path::write(&self.paths.path, &path, false)?;
+            camera_path::write(&self.tabs.paths.path, &path, false)?;
             command.arg("--path").arg(path);
         }
         if let Some(device) = &self.device {
@@ -219,8 +225,8 @@ impl Workbench {
         }
         // Frames of another sequence are not counted: the command refuses their folder.
         let done = if has_frames(&to) { frames } else { 0 };
-        let (child, ended) = start(command, folder, self.wake.clone())?;
-        self.paths.sequence.running = Some(Running {
+        let (child, ended) = start(command, folder, &self.setup.wake)?;
+        self.tabs.paths.sequence.running = Some(Running {
             child,
             ended,
             folder: to,
@@ -237,13 +243,13 @@ fn has_frames(folder: &Path) -> bool {
     folder.join("frame-00000.png").is_file()
 }
 
-type Started = (Arc<Mutex<Child>>, Receiver<(bool, String)>);
+type Started = (Arc<Mutex<Child>>, Background<(), (bool, String)>);
 
 /// Starts the command; its last line comes when it has ended, and `folder` is removed.
 fn start(
     mut command: Command,
     folder: tempfile::TempDir,
-    wake: Arc<dyn Fn() + Send + Sync>,
+    wake: &Wake,
 ) -> Result<Started, LabError> {
     let cannot = |e: std::io::Error| LabError::Request(format!("cannot render the sequence: {e}"));
     let mut child = command
@@ -254,9 +260,9 @@ fn start(
         .map_err(cannot)?;
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
     let child = Arc::new(Mutex::new(child));
-    let (out, ended) = unbounded();
+    let mut ended = Background::default();
     let waited = child.clone();
-    std::thread::spawn(move || {
+    ended.start((), wake, move || {
         let errors = std::thread::spawn(move || all_of(stderr));
         let said = all_of(stdout);
         let errors = errors.join().unwrap_or_default();
@@ -265,11 +271,8 @@ fn start(
         drop(folder);
         let ok = status.is_ok_and(|s| s.success());
         let text = if ok { said } else { errors };
-        let _ = out.send((
-            ok,
-            text.trim().lines().last().unwrap_or_default().to_string(),
-        ));
-        wake();
+        let last = text.trim().lines().last().unwrap_or_default();
+        (ok, last.to_string())
     });
     Ok((child, ended))
 }

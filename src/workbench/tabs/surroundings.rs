@@ -1,4 +1,4 @@
-//! Camera, lights, sky and time: what is around the method.
+//! Camera, lights, sky and time.
 
 use super::Tab;
 use crate::lab::Viewpoint;
@@ -76,9 +76,10 @@ impl Workbench {
         });
         let names: Vec<String> = self
             .scene
+            .loaded
             .as_ref()
             .map_or(Vec::new(), |s| s.cameras.keys().cloned().collect());
-        if let Some(scene) = self.scene.clone() {
+        if let Some(scene) = self.scene.loaded.clone() {
             ui.horizontal_wrapped(|ui| {
                 ui.label("views:");
                 for name in &names {
@@ -145,7 +146,7 @@ impl Workbench {
     }
 
     fn lights(&mut self, ui: &mut Ui) {
-        let Some(scene) = self.scene.clone() else {
+        let Some(scene) = self.scene.loaded.clone() else {
             return;
         };
         let own = LightState::of(&scene);
@@ -205,7 +206,8 @@ impl Workbench {
         }
     }
 
-    /// A field for the file of another sky. Returns true if one was requested; the light must not be edited then.
+    /// A field for the file of another sky. Returns true if one was requested; the light must not
+    /// be edited then.
     fn picture_file(&mut self, ui: &mut Ui) -> bool {
         ui.horizontal(|ui| {
             let field =
@@ -224,7 +226,7 @@ impl Workbench {
             let asked = (done || clicked) && self.view.picture.trim() != self.desired.environment;
             if asked {
                 if self.missing_scene().is_none() {
-                    self.before_loading = Some(self.state());
+                    self.scene.before = Some(self.state());
                 }
                 self.desired.environment = self.view.picture.trim().into();
                 self.desired.lights = None;

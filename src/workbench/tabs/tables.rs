@@ -81,7 +81,7 @@ fn first(row: &[Cell]) -> Option<String> {
     row.first().map(ToString::to_string)
 }
 
-/// The values of the first column, unless there are so many that nobody would choose among them.
+/// The values of the first column, unless there are too many to choose from.
 fn kinds(cells: &[Vec<Cell>]) -> Vec<String> {
     let mut list: Vec<String> = Vec::new();
     for value in cells.iter().filter_map(|r| first(r)) {
@@ -95,7 +95,7 @@ fn kinds(cells: &[Vec<Cell>]) -> Vec<String> {
     list
 }
 
-/// Numbers of the rows whose first column has that value.
+/// Numbers of the rows with that value in the first column.
 fn sift(cells: &[Vec<Cell>], filter: Option<&str>) -> Vec<usize> {
     let fits = |row: &[Cell]| filter.is_none_or(|f| first(row).as_deref() == Some(f));
     cells
@@ -106,7 +106,8 @@ fn sift(cells: &[Vec<Cell>], filter: Option<&str>) -> Vec<usize> {
         .collect()
 }
 
-/// The rows as CSV; a vector has a column a component. Numbers are written so that they read back exactly.
+/// The rows as CSV; a vector has a column a component. Numbers are written so that they read back
+/// exactly.
 fn csv<'r>(table: &Table, rows: impl Iterator<Item = &'r Vec<Cell>>) -> std::io::Result<Vec<u8>> {
     let mut out = csv::Writer::from_writer(Vec::new());
     let parts = |c: &Column| match c.kind {
@@ -170,8 +171,8 @@ impl Workbench {
             return;
         };
         let list = &info.graph.tables;
-        self.tables.chosen = self.tables.chosen.min(list.len().saturating_sub(1));
-        let Some(mut table) = list.get(self.tables.chosen).map(|t| &t.value) else {
+        self.tabs.tables.chosen = self.tabs.tables.chosen.min(list.len().saturating_sub(1));
+        let Some(mut table) = list.get(self.tabs.tables.chosen).map(|t| &t.value) else {
             ui.weak("The graph has no tables");
             return;
         };
@@ -180,22 +181,22 @@ impl Workbench {
             .show_ui(ui, |ui| {
                 for (i, t) in list.iter().map(|t| &t.value).enumerate() {
                     if ui
-                        .selectable_label(i == self.tables.chosen, &t.title)
+                        .selectable_label(i == self.tabs.tables.chosen, &t.title)
                         .on_hover_text(&t.help)
                         .clicked()
                     {
-                        (self.tables.chosen, self.tables.filter) = (i, None);
+                        (self.tabs.tables.chosen, self.tabs.tables.filter) = (i, None);
                         table = t;
                     }
                 }
             });
-        self.desired.table = Some(self.tables.chosen);
+        self.desired.table = Some(self.tabs.tables.chosen);
         ui.weak(&table.help);
-        self.tables.refresh();
+        self.tabs.tables.refresh();
         self.table_bar(ui, &table.title);
-        let shown = self.tables.rows.as_ref().map_or(0, |r| r.shown.len());
+        let shown = self.tabs.tables.rows.as_ref().map_or(0, |r| r.shown.len());
         if shown == 0 {
-            ui.weak(match (&info.graph.pointer, &self.tables.rows) {
+            ui.weak(match (&info.graph.pointer, &self.tabs.tables.rows) {
                 (_, None) => "…",
                 (Some(_), _) => "No rows: click on the picture",
                 (None, _) => "No rows",
@@ -210,11 +211,11 @@ impl Workbench {
     fn table_bar(&mut self, ui: &mut Ui, title: &str) {
         let mut export = false;
         ui.horizontal(|ui| {
-            let Some(rows) = &self.tables.rows else {
+            let Some(rows) = &self.tabs.tables.rows else {
                 return;
             };
             let name = rows.table.columns.first().map_or("", |c| c.name.as_str());
-            let mut filter = self.tables.filter.clone();
+            let mut filter = self.tabs.tables.filter.clone();
             if rows.kinds.len() > 1 || filter.is_some() {
                 let text = filter
                     .as_ref()
@@ -240,27 +241,27 @@ impl Workbench {
                 .add_enabled(!rows.shown.is_empty(), button)
                 .on_hover_text(about)
                 .clicked();
-            if filter != self.tables.filter {
-                self.tables.filter = filter;
-                self.tables.sift();
+            if filter != self.tabs.tables.filter {
+                self.tabs.tables.filter = filter;
+                self.tabs.tables.sift();
             }
         });
         if !export {
             return;
         }
-        let Some(rows) = &self.tables.rows else {
+        let Some(rows) = &self.tabs.tables.rows else {
             return;
         };
         let bytes = csv(
             &rows.table,
             rows.shown.iter().filter_map(|i| rows.cells.get(*i)),
         );
-        let name = format!("table-{}-{title}", self.name);
+        let name = format!("table-{}-{title}", self.experiment.name);
         self.export(&name, "csv", bytes);
     }
 
     fn table_body(&mut self, ui: &mut Ui, help: &str) {
-        let Some(rows) = &self.tables.rows else {
+        let Some(rows) = &self.tabs.tables.rows else {
             return;
         };
         let mut builder = TableBuilder::new(ui).striped(true).auto_shrink(false);
@@ -290,7 +291,8 @@ impl Workbench {
                 for cell in cells {
                     row.col(|ui| {
                         let rect = ui.max_rect();
-                        // Painted, not a label: a widget for each of hundreds of cells would take milliseconds.
+                        // Painted, not a label: a widget for each of hundreds of cells would take
+                        // milliseconds.
                         if ui.is_rect_visible(rect) {
                             let color = ui.visuals().text_color();
                             let text = cell.to_string();

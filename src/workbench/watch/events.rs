@@ -1,9 +1,9 @@
 //! Events of the file system, without those that change nothing.
 
+use crate::workbench::background::Wake;
 use crossbeam_channel::Sender;
 use notify::{Event, EventKind};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::Instant;
 
 /// The content of an event.
@@ -18,7 +18,7 @@ pub(super) enum Seen {
 /// Forwards events and wakes the window.
 pub(super) fn handler(
     send: Sender<(Instant, Seen)>,
-    wake: Arc<dyn Fn() + Send + Sync>,
+    wake: Wake,
 ) -> impl FnMut(notify::Result<Event>) + Send + 'static {
     move |event| {
         let Ok(event) = event else { return };

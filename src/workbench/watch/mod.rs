@@ -1,10 +1,11 @@
-//! Watches files. Folders are watched and not files, because editors save by writing a new file and renaming it.
+//! Watches files. It watches folders, because editors save by writing a new file and renaming it.
 
 mod events;
 mod mounts;
 mod places;
 mod poll;
 
+use crate::workbench::background::Wake;
 use crossbeam_channel::{Receiver, unbounded};
 use events::{Seen, handler};
 use notify::{RecommendedWatcher, RecursiveMode, Watcher};
@@ -12,7 +13,6 @@ use places::{absolute, links_below, places};
 use poll::Poll;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Files that changed, by their use.
@@ -43,7 +43,7 @@ pub struct Watch {
     polled: Option<Poll>,
     /// Makes another handler of events, for the watcher that polls.
     send: crossbeam_channel::Sender<(Instant, Seen)>,
-    wake: Arc<dyn Fn() + Send + Sync>,
+    wake: Wake,
     events: Receiver<(Instant, Seen)>,
     method: [PathBuf; 2],
     configs: PathBuf,
@@ -65,8 +65,9 @@ pub struct Watch {
 const QUIET: Duration = Duration::from_millis(8);
 
 impl Watch {
-    /// Starts watching; `wake` is called when something changed. `CONELAB_WATCH=poll` polls everything.
-    pub fn new(root: &Path, wake: Arc<dyn Fn() + Send + Sync>) -> Watch {
+    /// Starts watching; `wake` is called when something changed. `CONELAB_WATCH=poll` polls
+    /// everything.
+    pub fn new(root: &Path, wake: Wake) -> Watch {
         let (send, events) = unbounded();
         let under_root = |name: &str| {
             let path = root.join(name);
@@ -107,7 +108,8 @@ impl Watch {
         watch
     }
 
-    /// Watches these files in place of those of the scene before. A file that does not exist yet is seen when it comes.
+    /// Watches these files in place of those of the scene before. A file that does not exist yet is
+    /// seen when it comes.
     pub fn scene(&mut self, files: &[PathBuf]) {
         self.scene = files.iter().flat_map(|f| places(f)).collect();
         self.update();

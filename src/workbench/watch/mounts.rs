@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-/// Kinds of network and host file systems. `fuse.` stands for all of its kinds (sshfs, rclone, ...).
+/// Kinds of network and host file systems. `fuse.` stands for all of its kinds (sshfs, rclone,
+/// ...).
 const SILENT: [&str; 16] = [
     "9p", "afs", "beegfs", "ceph", "cifs", "drvfs", "fuse.", "gpfs", "lustre", "ncpfs", "nfs",
     "nfs4", "prl_fs", "smb3", "vboxsf", "virtiofs",

@@ -18,7 +18,8 @@ pub(super) fn absolute(file: &Path) -> PathBuf {
     }
 }
 
-/// A file and, where it is a link, every file on the way to its target: each of them may be replaced.
+/// A file and, where it is a link, every file on the way to its target: each of them may be
+/// replaced.
 pub(super) fn places(file: &Path) -> BTreeSet<PathBuf> {
     let mut all = BTreeSet::new();
     let mut next = absolute(file);

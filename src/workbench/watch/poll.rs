@@ -1,7 +1,7 @@
 //! Looks at folders every second, where the system sends no events.
 //!
-//! The watcher of `notify` 8.2 for this compares whole seconds, and only for a later date: it misses a second save
-//! within a second and a file that comes back with an older date.
+//! The watcher of `notify` 8.2 for this compares whole seconds, and only for a later date: it
+//! misses a second save within a second and a file that comes back with an older date.
 
 use notify::{Event, EventKind, RecursiveMode};
 use std::collections::BTreeMap;
@@ -22,7 +22,8 @@ type Folders = BTreeMap<PathBuf, (RecursiveMode, BTreeMap<PathBuf, Stamp>)>;
 pub(super) struct Poll(Arc<Mutex<Folders>>);
 
 impl Poll {
-    /// Looks from now on, in a thread of its own; `changed` gets an event for every file that changed.
+    /// Looks from now on, in a thread of its own; `changed` gets an event for every file that
+    /// changed.
     pub(super) fn start(
         mut changed: impl FnMut(notify::Result<Event>) + Send + 'static,
     ) -> std::io::Result<Poll> {

@@ -3,7 +3,7 @@
 use crate::campaign::report::Data;
 use crate::campaign::sweep::{Subject, collect};
 use crate::lab::LabError;
-use crossbeam_channel::{Receiver, unbounded};
+use crate::workbench::background::{Background, Wake};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -34,36 +34,33 @@ pub struct Folder {
     pub path: PathBuf,
     /// Its points, or why they cannot be read; nothing while they are read.
     pub data: Option<Result<Arc<Data>, String>>,
-    coming: Receiver<Result<Data, LabError>>,
+    work: Background<(), Result<Data, LabError>>,
 }
 
 impl Folder {
     /// Begins to read a folder.
-    pub fn open(path: PathBuf, wake: Arc<dyn Fn() + Send + Sync>) -> Folder {
-        let (out, coming) = unbounded();
+    pub fn open(path: PathBuf, wake: &Wake) -> Folder {
+        let mut work = Background::default();
         let folder = path.clone();
-        std::thread::spawn(move || {
-            let _ = out.send(collect(&[folder]).map(|c| Data::new(&c)));
-            wake();
-        });
+        work.start((), wake, move || collect(&[folder]).map(|c| Data::new(&c)));
         Folder {
             path,
             data: None,
-            coming,
+            work,
         }
     }
 
-    /// Takes in what was read; whether that was now.
+    /// Takes in the data. Returns whether it came now.
     pub fn take(&mut self) -> bool {
-        let Ok(data) = self.coming.try_recv() else {
+        let Some(((), data)) = self.work.take() else {
             return false;
         };
-        self.data = Some(data.map(Arc::new).map_err(|e| e.to_string()));
+        self.data = Some(data.and_then(|data| data.map(Arc::new).map_err(|e| e.to_string())));
         true
     }
 }
 
-/// What a picture and a subject do not have in common, for people; empty if they can be compared.
+/// Differences between a picture and a subject in words; empty if they can be compared.
 pub fn differences(now: &Subject, device: &str, subject: &(Subject, String)) -> Vec<&'static str> {
     let there = &subject.0;
     let list = [

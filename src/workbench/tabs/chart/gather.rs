@@ -5,6 +5,7 @@ use crate::lab::{Lab, LabError, Workspace};
 use crate::measure::reference::{Gathered, Goal, gather};
 use crate::scene::Scene;
 use crate::vulkan::GpuOptions;
+use crate::workbench::background::Wake;
 use crossbeam_channel::{Receiver, unbounded};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -17,7 +18,7 @@ pub struct Job {
     pub home: Workspace,
     /// The device.
     pub gpu: GpuOptions,
-    /// What the reference is of.
+    /// The experiment of the reference.
     pub experiment: Experiment,
     /// The scene with its own light.
     pub scene: Arc<Scene>,
@@ -31,7 +32,7 @@ pub struct Job {
 pub struct Gather {
     /// How far it is; nothing before the first samples.
     pub state: Option<Gathered>,
-    /// How far it was when that was first told, and when.
+    /// Samples at the first report, and its time.
     first: Option<(u64, Instant)>,
     /// Whether it was asked to stop.
     pub cancelled: bool,
@@ -47,7 +48,7 @@ enum Message {
 
 impl Gather {
     /// Begins.
-    pub fn start(job: Job, wake: Arc<dyn Fn() + Send + Sync>) -> Gather {
+    pub fn start(job: Job, wake: Wake) -> Gather {
         let (out, messages) = unbounded();
         let cancel = Arc::new(AtomicBool::new(false));
         let stop = cancel.clone();
@@ -82,7 +83,7 @@ impl Gather {
         self.cancel.store(true, Ordering::Relaxed);
     }
 
-    /// How long it takes yet, at the pace so far.
+    /// Remaining time at the present speed.
     pub fn left(&self) -> Option<Duration> {
         let (now, (first, since)) = (self.state?, self.first?);
         let done = now.samples.checked_sub(first).filter(|done| *done > 0)?;

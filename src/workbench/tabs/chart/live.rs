@@ -1,5 +1,5 @@
-//! The workbench's own dots: their times from the frames that are shown, their errors from the error worker; and the
-//! reference that the errors need.
+//! The workbench's own dots: their times from the frames that are shown, their errors from the
+//! error worker; and the reference that the errors need.
 
 use super::gather::{Gather, Job};
 use super::plot::Live;
@@ -14,15 +14,16 @@ use egui::Ui;
 use serde_json::json;
 use std::time::{Duration, Instant};
 
-/// Frames whose times count.
+/// Number of frames for times.
 const KEPT: usize = 240;
 /// Places that a dot has been at.
 const TRAIL: usize = 16;
 /// How long everything must stand still before its error is measured.
 const QUIET: Duration = Duration::from_millis(150);
-/// How long frames go on after an error was measured, to measure their time; at least two and at most 32.
+/// How long frames go on after an error was measured, to measure their time; at least two and at
+/// most 32.
 const MEASURED: Duration = Duration::from_millis(400);
-/// Samples of a reference when nothing else is said, as `conelab reference`.
+/// Default samples of a reference, as in `conelab reference`.
 const SAMPLES: u64 = 256;
 
 /// Times, error and trail of side A or B.
@@ -43,7 +44,7 @@ pub struct State {
     /// Number of the request that was sent last, and when it was first seen.
     since: (u64, Instant),
     pub(super) gather: Option<Gather>,
-    /// References gathered so far.
+    /// Number of gathered references.
     gathered: u64,
     /// Samples of every pixel of the next one.
     pub(super) samples: u64,
@@ -139,7 +140,7 @@ impl super::Chart {
             return;
         };
         if side.request != picture.request {
-            // The dot moves: what it leaves is where it was when its error was right.
+            // The dot moves. Its trail marks positions with a valid error.
             if let Some(at) = side.place().filter(|at| side.trail.last() != Some(at)) {
                 side.trail.push(at);
             }
@@ -151,10 +152,10 @@ impl super::Chart {
         if side.times.len() == KEPT {
             side.times.remove(0);
         }
-        side.times.push(picture.gpu_ms);
+        side.times.push(picture.times.gpu_ms);
     }
 
-    /// Metric and error of what a side shows, if it has been measured: 0 is perfect.
+    /// Metric and error of a side's picture, if measured; 0 is perfect.
     pub fn known_error(&self, side: usize, sent: u64) -> Option<(&str, f64)> {
         let measured = self.live.sides[side]
             .error
@@ -164,12 +165,12 @@ impl super::Chart {
         Some((measured.query.metric.key, error))
     }
 
-    /// The device is another one: what it was asked is asked again.
+    /// The device was replaced, so requests are sent again.
     pub fn restarted(&mut self) {
         self.live.sides.iter_mut().for_each(|s| s.asked = None);
     }
 
-    /// Ends what is in work. Returns the validation messages of its device.
+    /// Stops the gathering. Returns the validation messages of its device.
     pub fn close(self, patience: Duration) -> Vec<String> {
         let mut messages = self.live.messages;
         messages.extend(self.live.gather.into_iter().flat_map(|g| g.stop(patience)));
@@ -178,33 +179,34 @@ impl super::Chart {
 }
 
 impl Workbench {
-    /// The error that is to be asked for of A and B.
+    /// The error to request for A and B.
     fn query(&self) -> ErrorQuery {
         let (part, bounces) = self
+            .tabs
             .chart
             .choice
-            .part_and_bounces(self.chart.data().map(|d| &**d));
-        let metric = self.chart.choice.metric;
+            .part_and_bounces(self.tabs.chart.data().map(|d| &**d));
+        let metric = self.tabs.chart.choice.metric;
         ErrorQuery {
             part,
             metric,
             bounces,
-            gathered: self.chart.live.gathered,
+            gathered: self.tabs.chart.live.gathered,
         }
     }
 
-    /// Whether a side shows something whose error was not asked for.
+    /// Whether a side shows a picture without a requested error.
     fn needs_error(&self, side: usize, query: &ErrorQuery) -> bool {
         let shows = self.sides[side]
             .picture
             .as_ref()
-            .is_some_and(|p| !p.preview && p.request >= self.sent_number);
-        let asked = self.chart.live.sides[side].asked.as_ref();
-        let known = asked.is_some_and(|a| a.0 >= self.sent_number && a.1 == *query);
+            .is_some_and(|p| !p.preview && p.request >= self.sent.number);
+        let asked = self.tabs.chart.live.sides[side].asked.as_ref();
+        let known = asked.is_some_and(|a| a.0 >= self.sent.number && a.1 == *query);
         self.desired.sides[side].is_some() && shows && self.sides[side].errors.is_empty() && !known
     }
 
-    /// Whether an error is about to be asked for.
+    /// Whether an error is about to be requested.
     pub(super) fn error_pending(&self) -> bool {
         let query = self.query();
         !self.desired.clock.playing && (0..2).any(|side| self.needs_error(side, &query))
@@ -212,13 +214,13 @@ impl Workbench {
 
     /// Asks for the errors of pictures that have come to rest.
     pub(crate) fn request_errors(&mut self, ui: &Ui) {
-        if self.chart.live.since.0 != self.sent_number {
-            self.chart.live.since = (self.sent_number, Instant::now());
+        if self.tabs.chart.live.since.0 != self.sent.number {
+            self.tabs.chart.live.since = (self.sent.number, Instant::now());
         }
-        if !self.tab.is(super::TAB) || !self.error_pending() {
+        if !self.tabs.open.is(super::TAB) || !self.error_pending() {
             return;
         }
-        let stood = self.chart.live.since.1.elapsed();
+        let stood = self.tabs.chart.live.since.1.elapsed();
         if stood < QUIET {
             ui.ctx().request_repaint_after(QUIET - stood);
             return;
@@ -226,7 +228,7 @@ impl Workbench {
         let query = self.query();
         for side in 0..2 {
             if self.needs_error(side, &query) {
-                self.chart.live.sides[side].asked = Some((self.sent_number, query.clone()));
+                self.tabs.chart.live.sides[side].asked = Some((self.sent.number, query.clone()));
                 self.engine.order(Order::MeasureError(side, query.clone()));
             }
         }
@@ -234,7 +236,7 @@ impl Workbench {
 
     /// Takes in an answer of the error worker.
     pub(crate) fn error_came(&mut self, result: ErrorResult) {
-        let side = &mut self.chart.live.sides[result.side];
+        let side = &mut self.tabs.chart.live.sides[result.side];
         let subject = |j: &ErrorResult| j.result.as_ref().ok().map(|v| v.subject.clone());
         let other =
             |old: &ErrorResult| old.query != result.query || subject(old) != subject(&result);
@@ -249,9 +251,9 @@ impl Workbench {
             "samples": measured.and_then(|v| v.error).map(|e| e.samples),
             "why": result.result.as_ref().err() });
         side.error = Some(result);
-        // A single frame after a rest is slower than many: clocks are low. The error worker is not slowed by those that
-        // follow.
-        if !self.chart.live.awaits() {
+        // A single frame after a rest is slower than many: clocks are low. The error worker is not
+        // slowed by those that follow.
+        if !self.tabs.chart.live.awaits() {
             self.engine.order(Order::Frames(
                 (MEASURED.as_secs_f64() * 1e3 / ms.max(0.1)).clamp(2.0, 32.0) as u32,
             ));
@@ -259,17 +261,25 @@ impl Workbench {
         self.event("error", event);
     }
 
-    /// Gathers the reference of what A shows.
+    /// Gathers the reference of A's picture.
     pub(super) fn start_gathering(&mut self) {
-        let (Some(side), Some(scene), Some(picture)) =
-            (&self.desired.sides[0], &self.scene, &self.sides[0].picture)
-        else {
+        let (Some(side), Some(scene), Some(picture)) = (
+            &self.desired.sides[0],
+            &self.scene.loaded,
+            &self.sides[0].picture,
+        ) else {
             return;
         };
-        let experiment = save::still(&self.desired, side, &self.name, picture.time, scene);
-        self.fixed_size = Some(experiment.size);
-        let (bounces, samples) = (self.query().bounces, self.chart.live.samples);
-        let (home, gpu) = (self.home.clone(), self.gpu.clone());
+        let experiment = save::still(
+            &self.desired,
+            side,
+            &self.experiment.name,
+            picture.time,
+            scene,
+        );
+        self.layout.fixed_size = Some(experiment.size);
+        let (bounces, samples) = (self.query().bounces, self.tabs.chart.live.samples);
+        let (home, gpu) = (self.setup.home.clone(), self.setup.gpu.clone());
         let job = Job {
             home,
             gpu,
@@ -278,8 +288,8 @@ impl Workbench {
             bounces,
             samples,
         };
-        self.chart.live.said.clear();
-        self.chart.live.gather = Some(Gather::start(job, self.wake.clone()));
+        self.tabs.chart.live.said.clear();
+        self.tabs.chart.live.gather = Some(Gather::start(job, self.setup.wake.clone()));
         self.event(
             "gathering",
             json!({ "bounces": bounces, "samples": samples }),
@@ -288,7 +298,7 @@ impl Workbench {
 
     /// Takes in how far the gathering is.
     pub(super) fn poll_gather(&mut self) {
-        let Some(gather) = self.chart.live.gather.as_mut() else {
+        let Some(gather) = self.tabs.chart.live.gather.as_mut() else {
             return;
         };
         let samples = |gather: &Gather| gather.state.map(|s| s.samples);
@@ -299,14 +309,14 @@ impl Workbench {
             self.event("gathers", json!({ "samples": now }));
         }
         let Some(result) = result else { return };
-        let gather = self.chart.live.gather.take();
-        self.chart.live.messages.extend(
+        let gather = self.tabs.chart.live.gather.take();
+        self.tabs.chart.live.messages.extend(
             gather
                 .into_iter()
                 .flat_map(|g| g.stop(Duration::from_secs(5))),
         );
-        self.chart.live.gathered += 1;
-        self.chart.live.said = match &result {
+        self.tabs.chart.live.gathered += 1;
+        self.tabs.chart.live.said = match &result {
             Ok(samples) => format!("gathered {samples} samples a pixel"),
             Err(e) => format!("not gathered: {e}"),
         };

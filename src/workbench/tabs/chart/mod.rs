@@ -1,4 +1,5 @@
-//! Error against time while one works: the points of a sweep, and the workbench as a dot among them.
+//! Error against time while one works: the points of a sweep, and the workbench as a dot among
+//! them.
 
 mod choice;
 mod folder;
@@ -26,7 +27,7 @@ use std::time::{Duration, Instant};
 
 pub(crate) const TAB: Tab = Tab::new("Chart", |workbench, ui, _| workbench.chart_tab(ui));
 
-/// Most dots whose places are logged for scripts.
+/// Most dots that are logged for scripts.
 const MAX_LOGGED: usize = 2000;
 /// Least time between two tellings.
 const LOG_AGE: Duration = Duration::from_millis(100);
@@ -51,17 +52,18 @@ pub struct Chart {
 impl Workbench {
     /// The tab.
     pub(crate) fn chart_tab(&mut self, ui: &mut Ui) {
-        ui.weak("How far pictures are from the path-traced truth, and what they take: a sweep's, and the one shown.");
+        ui.weak("Error against time, from the path-traced reference: points of a sweep, and the shown picture.");
         self.folder_row(ui);
         let data = self
+            .tabs
             .chart
             .chosen
-            .refresh(self.chart.folder.as_ref(), &self.chart.choice);
+            .refresh(self.tabs.chart.folder.as_ref(), &self.tabs.chart.choice);
         self.choice_row(ui, data.as_deref());
         let subject = data
             .as_ref()
-            .and_then(|d| d.keys.get(self.chart.choice.subject));
-        let now = self.chart.live.subject();
+            .and_then(|d| d.keys.get(self.tabs.chart.choice.subject));
+        let now = self.tabs.chart.live.subject();
         let device = self.device.as_ref().map_or("", |d| d.name.as_str());
         let mut differences: Vec<String> = match (now, subject) {
             (Some(now), Some(subject)) => folder::differences(now, device, subject)
@@ -72,21 +74,21 @@ impl Workbench {
         };
         let swept = data
             .as_ref()
-            .and_then(|d| d.samples.get(self.chart.choice.subject));
-        differences.extend(swept.and_then(|swept| self.chart.live.reference_differs(swept)));
-        let title = self.chart.choice.metric.axis();
-        let lives = [0, 1].map(|side| self.chart.live.dot(side, self.sent_number));
+            .and_then(|d| d.samples.get(self.tabs.chart.choice.subject));
+        differences.extend(swept.and_then(|swept| self.tabs.chart.live.reference_differs(swept)));
+        let title = self.tabs.chart.choice.metric.axis();
+        let lives = [0, 1].map(|side| self.tabs.chart.live.dot(side, self.sent.number));
         let height = (ui.available_height() - 150.0).clamp(160.0, 520.0);
         let shown = plot::Shown {
-            chosen: &self.chart.chosen,
+            chosen: &self.tabs.chart.chosen,
             fits: differences.is_empty(),
             live: lives.each_ref().map(Option::as_ref),
             title: &title,
         };
         let name = format!(
             "{:?} {:?}",
-            self.chart.folder.as_ref().map(|f| &f.path),
-            self.chart.choice
+            self.tabs.chart.folder.as_ref().map(|f| &f.path),
+            self.tabs.chart.choice
         );
         let drawn = plot::show(ui, &name, height, &shown);
         if !differences.is_empty() {
@@ -97,11 +99,12 @@ impl Workbench {
         }
         self.live_rows(ui, &title, &lives);
         let Some(data) = data else { return };
-        let scored = drawn.hovered.map(|i| &self.chart.chosen.dots[i]);
+        let scored = drawn.hovered.map(|i| &self.tabs.chart.chosen.dots[i]);
         if let Some((dot, error)) = scored.and_then(|s| Some((data.dots.get(s.index)?, s.error))) {
-            self.chart
+            self.tabs
+                .chart
                 .thumbnail
-                .show(&drawn.response, dot, &title, error, &self.wake);
+                .show(&drawn.response, dot, &title, error, &self.setup.wake);
             if drawn.response.clicked() {
                 self.load_point(dot);
             }
@@ -111,13 +114,15 @@ impl Workbench {
 
     fn folder_row(&mut self, ui: &mut Ui) {
         let folders = self
+            .tabs
             .chart
             .folders
-            .get_or_insert_with(|| folder::list(&self.root))
+            .get_or_insert_with(|| folder::list(&self.setup.home.root))
             .clone();
         let mut chosen = None;
         ui.horizontal(|ui| {
             let name = self
+                .tabs
                 .chart
                 .folder
                 .as_ref()
@@ -139,19 +144,19 @@ impl Workbench {
                 .on_hover_text("Reads captures/sweeps and the sweep again")
                 .clicked()
             {
-                self.chart.folders = None;
-                chosen = self.chart.folder.as_ref().map(|f| f.path.clone());
+                self.tabs.chart.folders = None;
+                chosen = self.tabs.chart.folder.as_ref().map(|f| f.path.clone());
             }
         });
-        if self.chart.folder.is_none() && chosen.is_none() {
+        if self.tabs.chart.folder.is_none() && chosen.is_none() {
             chosen = folders.first().cloned();
         }
         if let Some(path) = chosen {
-            self.chart.folder = Some(Folder::open(path, self.wake.clone()));
-            self.chart.chosen.forget();
-            (self.chart.choice.subject, self.chart.by_hand) = (0, false);
+            self.tabs.chart.folder = Some(Folder::open(path, &self.setup.wake));
+            self.tabs.chart.chosen.forget();
+            (self.tabs.chart.choice.subject, self.tabs.chart.by_hand) = (0, false);
         }
-        match self.chart.folder.as_ref().map(|f| &f.data) {
+        match self.tabs.chart.folder.as_ref().map(|f| &f.data) {
             None => {
                 let text = "There is no sweep in captures/sweeps yet: `conelab sweep configs/sweeps/cones.ron` makes one.";
                 ui.weak(text);
@@ -167,23 +172,25 @@ impl Workbench {
     }
 
     fn choice_row(&mut self, ui: &mut Ui, data: Option<&Data>) {
-        // The subject that is shown, unless another one was asked for.
-        if let (Some(data), Some(now), false) =
-            (data, self.chart.live.subject(), self.chart.by_hand)
-        {
+        // The subject of the chart: the chosen one, else the picture's.
+        if let (Some(data), Some(now), false) = (
+            data,
+            self.tabs.chart.live.subject(),
+            self.tabs.chart.by_hand,
+        ) {
             let device = self.device.as_ref().map_or("", |d| d.name.as_str());
             let fits = |key: &_| folder::differences(now, device, key).is_empty();
-            self.chart.choice.subject = data
+            self.tabs.chart.choice.subject = data
                 .keys
                 .iter()
                 .position(fits)
-                .unwrap_or(self.chart.choice.subject);
+                .unwrap_or(self.tabs.chart.choice.subject);
         }
         let graph = self.sides[0].info.as_ref().map(|info| &info.graph);
         let own = graph.map_or(Vec::new(), |graph| {
             parts_of(graph).into_iter().map(|p| p.name).collect()
         });
-        let choice = &mut self.chart.choice;
+        let choice = &mut self.tabs.chart.choice;
         ui.horizontal_wrapped(|ui| {
             egui::ComboBox::from_id_salt("part")
                 .selected_text(format!("part: {}", choice.part))
@@ -214,7 +221,7 @@ impl Workbench {
             .width(280.0);
         let menu = menu.show_ui(ui, |ui| {
             for i in 0..data.subjects.len() {
-                self.chart.by_hand |= ui
+                self.tabs.chart.by_hand |= ui
                     .selectable_value(&mut choice.subject, i, name(i))
                     .clicked();
             }
@@ -228,7 +235,7 @@ impl Workbench {
 
     /// Shows a point's experiment in side A, at its size: then its error can be compared.
     fn load_point(&mut self, dot: &Dot) {
-        let Some(folder) = &self.chart.folder else {
+        let Some(folder) = &self.tabs.chart.folder else {
             return;
         };
         let short: String = dot.id.chars().take(8).collect();
@@ -242,9 +249,9 @@ impl Workbench {
                 {
                     without_defaults(&mut experiment, &info.graph.params);
                 }
-                self.fixed_size = Some(experiment.size);
+                self.layout.fixed_size = Some(experiment.size);
                 self.open(&experiment);
-                self.status = format!("loaded {name}");
+                self.messages.status = format!("loaded {name}");
                 self.event(
                     "loaded point",
                     json!({ "id": dot.id, "name": name, "params": experiment_params(&experiment) }),
@@ -256,42 +263,47 @@ impl Workbench {
 
     /// Logs where the dots are, in points, for scripts.
     fn log_dots(&mut self, ui: &Ui, data: &Data, places: &[egui::Pos2], differences: &[String]) {
-        if self.events.is_none() {
+        if self.setup.events.is_none() {
             return;
         }
-        let chosen = &self.chart.chosen;
+        let chosen = &self.tabs.chart.chosen;
         let dots = chosen.dots.iter().zip(places).zip(&chosen.on_front).take(MAX_LOGGED).map(|((s, at), front)| {
             json!({ "id": data.dots[s.index].id, "at": [at.x.round(), at.y.round()], "ms": s.ms, "error": s.error,
                 "front": front })
         });
-        let logged = json!({ "part": self.chart.choice.part, "metric": self.chart.choice.metric.key, "differs": differences,
+        let logged = json!({ "part": self.tabs.chart.choice.part, "metric": self.tabs.chart.choice.metric.key, "differs": differences,
             "dots": dots.collect::<Vec<_>>() });
-        if logged == self.chart.logged {
+        if logged == self.tabs.chart.logged {
             return;
         }
         // The dots move as long as the diamond does.
-        let age = self.chart.logged_at.map_or(LOG_AGE, |t| t.elapsed());
+        let age = self.tabs.chart.logged_at.map_or(LOG_AGE, |t| t.elapsed());
         if age < LOG_AGE {
             ui.ctx().request_repaint_after(LOG_AGE - age);
         } else {
-            self.chart.logged_at = Some(Instant::now());
-            self.chart.logged = logged.clone();
+            self.tabs.chart.logged_at = Some(Instant::now());
+            self.tabs.chart.logged = logged.clone();
             self.event("dots", logged);
         }
     }
 
     /// Takes in the messages of the threads of this tab.
     pub(crate) fn poll_chart(&mut self) {
-        if self.chart.folder.as_mut().is_some_and(Folder::take) {
-            self.chart.chosen.forget();
+        if self.tabs.chart.folder.as_mut().is_some_and(Folder::take) {
+            self.tabs.chart.chosen.forget();
         }
         self.poll_gather();
     }
 
     /// Whether something is about to come.
     pub(crate) fn chart_awaits(&self) -> bool {
-        let reading = self.chart.folder.as_ref().is_some_and(|f| f.data.is_none());
-        self.tab.is(TAB) && (reading || self.chart.live.awaits() || self.error_pending())
+        let reading = self
+            .tabs
+            .chart
+            .folder
+            .as_ref()
+            .is_some_and(|f| f.data.is_none());
+        self.tabs.open.is(TAB) && (reading || self.tabs.chart.live.awaits() || self.error_pending())
     }
 }
 

@@ -1,4 +1,5 @@
-//! Error against time, both logarithmic: dots of a sweep, their Pareto front, and where the workbench is.
+//! Error against time, both logarithmic: dots of a sweep, their Pareto front, and where the
+//! workbench is.
 
 use super::choice::Chosen;
 use crate::campaign::charts::ticks;
@@ -25,7 +26,7 @@ pub struct Live {
     pub ms: f64,
     /// Its error, as last known.
     pub error: f64,
-    /// Whether the error is that of what is shown.
+    /// Whether the error is of the shown picture.
     pub fresh: bool,
     /// Where it was: (ms, error), the oldest first.
     pub trail: Vec<(f64, f64)>,
@@ -35,7 +36,7 @@ pub struct Live {
 pub struct Shown<'a> {
     /// The dots.
     pub chosen: &'a Chosen,
-    /// Whether they are of what the workbench looks at; dimmed if not.
+    /// Whether they belong to the present picture's subject; dimmed if not.
     pub fits: bool,
     /// A and B.
     pub live: [Option<&'a Live>; 2],
@@ -173,7 +174,7 @@ pub fn show(ui: &mut Ui, name: &str, height: f32, shown: &Shown<'_>) -> Drawn {
     }
 }
 
-/// Round numbers in a range of logarithms; those are labelled that have so many points of room.
+/// Round numbers in a range of logarithms. Numbers with enough room have labels.
 fn marks(input: GridInput, room: f64) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     // Far zoomed out, or before there is anything to show.
@@ -182,7 +183,7 @@ fn marks(input: GridInput, room: f64) -> Vec<GridMark> {
     if far || high <= low {
         return Vec::new();
     }
-    // The plot labels what has a large step.
+    // The plot labels numbers with a large step.
     let (unlabelled, labelled) = (input.base_step_size, 1e3 * input.base_step_size);
     let gap = room / f64::from(LEAST) * input.base_step_size;
     let mut last = f64::NEG_INFINITY;

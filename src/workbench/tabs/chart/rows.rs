@@ -1,4 +1,4 @@
-//! Below the chart: what is known of A and B, the reference that is missing, the size that fits.
+//! Rows under the chart: results of A and B, a missing reference, the size of the reference.
 
 use super::plot::{LIVE, Live};
 use crate::workbench::Workbench;
@@ -7,7 +7,7 @@ use egui::{Button, DragValue, ProgressBar, Ui};
 use std::time::Duration;
 
 impl Workbench {
-    /// What is known of A and B, and what can be done about what is not.
+    /// Results of A and B, and actions for missing ones.
     pub(super) fn live_rows(&mut self, ui: &mut Ui, title: &str, lives: &[Option<Live>; 2]) {
         let mut missing = false;
         for (side, live) in lives
@@ -15,7 +15,7 @@ impl Workbench {
             .enumerate()
             .filter(|s| self.desired.sides[s.0].is_some())
         {
-            let state = &self.chart.live.sides[side];
+            let state = &self.tabs.chart.live.sides[side];
             let name = ["A", "B"][side];
             match state.error.as_ref().map(|j| (&j.query, &j.result)) {
                 None if self.desired.clock.playing => drop(ui.weak(format!(
@@ -74,7 +74,7 @@ impl Workbench {
     }
 
     fn gather_row(&mut self, ui: &mut Ui, missing: bool) {
-        if let Some(gather) = &mut self.chart.live.gather {
+        if let Some(gather) = &mut self.tabs.chart.live.gather {
             ui.horizontal(|ui| {
                 let (done, of) = gather.state.map_or((0, 0), |g| (g.samples, g.goal));
                 let part = if of == 0 {
@@ -112,8 +112,8 @@ impl Workbench {
             });
             return;
         }
-        if !self.chart.live.said.is_empty() {
-            ui.weak(&self.chart.live.said);
+        if !self.tabs.chart.live.said.is_empty() {
+            ui.weak(&self.tabs.chart.live.said);
         }
         let mut start = false;
         ui.horizontal(|ui| {
@@ -123,9 +123,9 @@ impl Workbench {
                          on: a reference fits no other";
             let text = if missing { "gather the reference" } else { "gather more" };
             start = ui.button(text).on_hover_text(about).clicked();
-            let samples = DragValue::new(&mut self.chart.live.samples).range(32..=1 << 24).speed(32).suffix(" samples");
+            let samples = DragValue::new(&mut self.tabs.chart.live.samples).range(32..=1 << 24).speed(32).suffix(" samples");
             spin(ui, samples, "samples of the reference")
-                .on_hover_text("Of every pixel, in all; the error of the reference falls with their root");
+                .on_hover_text("Samples of every pixel; the error of the reference falls with their square root");
         });
         if start {
             self.start_gathering();
@@ -136,12 +136,13 @@ impl Workbench {
     fn size_row(&mut self, ui: &mut Ui) {
         let (w, h) = self.desired.size;
         let sweeps = self
+            .tabs
             .chart
             .data()
-            .and_then(|d| d.keys.get(self.chart.choice.subject))
+            .and_then(|d| d.keys.get(self.tabs.chart.choice.subject))
             .map(|k| k.0.size);
         ui.horizontal_wrapped(|ui| {
-            ui.weak(match self.fixed_size {
+            ui.weak(match self.layout.fixed_size {
                 Some(_) => format!("picture: {w}x{h}"),
                 None => format!("picture: {w}x{h}, as large as the panel; errors are of one size"),
             });
@@ -150,10 +151,10 @@ impl Workbench {
                     .small_button(format!("{}x{} as the sweep", size.0, size.1))
                     .clicked()
             {
-                self.fixed_size = Some(size);
+                self.layout.fixed_size = Some(size);
             }
-            if self.fixed_size.is_some() && ui.small_button("as the panel").clicked() {
-                self.fixed_size = None;
+            if self.layout.fixed_size.is_some() && ui.small_button("as the panel").clicked() {
+                self.layout.fixed_size = None;
             }
         });
     }

@@ -1,43 +1,23 @@
-//! What is said of the dot under the pointer, with its picture.
+//! Details of the dot under the pointer, with its picture.
 
 use crate::campaign::report::Dot;
-use crossbeam_channel::{Receiver, Sender, unbounded};
+use crate::workbench::background::{Background, Wake};
 use egui::{ColorImage, Response, TextureHandle};
-use std::sync::Arc;
-
-/// The number of a dot and its picture.
-type Made = (String, ColorImage);
 
 /// The picture of the last dot that was pointed at.
+#[derive(Default)]
 pub struct Thumbnail {
     /// Number of the dot.
     of: String,
     texture: Option<TextureHandle>,
-    made: (Sender<Made>, Receiver<Made>),
-}
-
-impl Default for Thumbnail {
-    fn default() -> Thumbnail {
-        Thumbnail {
-            of: String::new(),
-            texture: None,
-            made: unbounded(),
-        }
-    }
+    work: Background<String, Option<ColorImage>>,
 }
 
 impl Thumbnail {
     /// Shows a dot at the pointer: picture, parameters, time, error.
-    pub fn show(
-        &mut self,
-        chart: &Response,
-        dot: &Dot,
-        title: &str,
-        error: f64,
-        wake: &Arc<dyn Fn() + Send + Sync>,
-    ) {
-        for (id, image) in self.made.1.try_iter() {
-            if id == self.of {
+    pub fn show(&mut self, chart: &Response, dot: &Dot, title: &str, error: f64, wake: &Wake) {
+        while let Some((id, image)) = self.work.take() {
+            if let Some(image) = image.ok().flatten().filter(|_| id == self.of) {
                 self.texture = Some(chart.ctx.load_texture(
                     "dot",
                     image,
@@ -49,13 +29,8 @@ impl Thumbnail {
             self.of.clone_from(&dot.id);
             self.texture = None;
             if let Some(bytes) = dot.picture.clone() {
-                let (id, out, wake) = (dot.id.clone(), self.made.0.clone(), wake.clone());
-                std::thread::spawn(move || {
-                    if let Some(image) = decoded(&bytes) {
-                        let _ = out.send((id, image));
-                        wake();
-                    }
-                });
+                self.work
+                    .start(dot.id.clone(), wake, move || decoded(&bytes));
             }
         }
         let texture = self.texture.clone();

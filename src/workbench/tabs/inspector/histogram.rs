@@ -11,7 +11,8 @@ const COLORS: [Color32; 4] = [
     Color32::from_rgb(190, 190, 190),
 ];
 
-/// Draws it: a line a channel, logarithm of the counts upwards, the range from black to white to the right.
+/// Draws it: a line a channel, logarithm of the counts upwards, the range from black to white to
+/// the right.
 pub fn show(ui: &mut Ui, done: &Done) {
     let (rect, response) =
         ui.allocate_exact_size(Vec2::new(ui.available_width(), 80.0), Sense::hover());

@@ -78,7 +78,7 @@ impl Decoded {
         }
     }
 
-    /// RGBA, 8 bits each; what is not a number is magenta, what is infinite cyan.
+    /// RGBA, 8 bits each; NaN is magenta, infinity cyan.
     pub fn image(&self, tone: &Tone) -> Vec<u8> {
         let mut out = vec![0; self.floats.len() * 4];
         out.par_chunks_mut(4 << 12)
@@ -125,7 +125,8 @@ impl Decoded {
     }
 }
 
-/// The texels of a slice as the world has them: y, where it lies in the slice, goes up. Seen along x, z goes to the right.
+/// The texels of a slice in the orientation of the world: y goes up. Seen along x, z goes to the
+/// right.
 pub fn upright(texels: Texels, axis: usize) -> Texels {
     let [width, height, _] = texels.extent.map(|n| n as usize);
     let size = texels.format.bytes as usize;
@@ -156,7 +157,8 @@ pub fn upright(texels: Texels, axis: usize) -> Texels {
     }
 }
 
-/// Position in the texture of a texel of the picture, which is `height` texels high: two numbers, three for a volume.
+/// Position in the texture of a texel of the picture, which is `height` texels high: two numbers,
+/// three for a volume.
 pub fn texel(target: &InspectTarget, volume: bool, height: u32, x: u32, y: u32) -> Vec<u32> {
     let up = height.saturating_sub(y + 1);
     match (volume, target.axis) {

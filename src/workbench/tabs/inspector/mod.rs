@@ -11,17 +11,17 @@ use super::Tab;
 use crate::graph::plan::TexturePlan;
 use crate::lab::Texels;
 use crate::vulkan::format::Channels;
+use crate::workbench::background::Wake;
 use crate::workbench::desired::request::InspectTarget;
 use crate::workbench::engine::report::GraphInfo;
 use crate::workbench::panel::control::{named, spin};
 use crate::workbench::{INSPECTOR, Workbench};
 use egui::{Color32, DragValue, Slider, TextureId, Ui, Vec2};
 use image::{Channel, Tone};
-use std::sync::Arc;
 use work::{Done, Source, Work};
 
 pub(crate) const TAB: Tab = Tab {
-    middle: |workbench, ui, textures| match workbench.inspector.fills_viewport() {
+    middle: |workbench, ui, textures| match workbench.tabs.inspector.fills_viewport() {
         true => workbench.inspected(ui, textures),
         false => workbench.picture(ui, textures),
     },
@@ -84,21 +84,15 @@ impl Inspector {
         };
     }
 
-    /// Takes in the texels that were asked for.
-    /// Those of a volume are a slice.
-    pub fn note(
-        &mut self,
-        target: InspectTarget,
-        texels: Texels,
-        volume: bool,
-        wake: &Arc<dyn Fn() + Send + Sync>,
-    ) {
+    /// Takes in requested texels.
+    /// Texels of a volume are a slice.
+    pub fn note(&mut self, target: InspectTarget, texels: Texels, volume: bool, wake: &Wake) {
         let texels = if volume {
             image::upright(texels, target.axis)
         } else {
             texels
         };
-        // What was asked for before the user chose anew would only hold up what is to come.
+        // Results of an earlier choice would only delay the present one.
         if target.texture != self.target.texture || target.side != self.target.side {
             return;
         }
@@ -111,10 +105,7 @@ impl Inspector {
     }
 
     /// New pixels to show, if there are.
-    pub fn take(
-        &mut self,
-        wake: &Arc<dyn Fn() + Send + Sync>,
-    ) -> Option<crate::workbench::NewPixels> {
+    pub fn take(&mut self, wake: &Wake) -> Option<crate::workbench::NewPixels> {
         let done = self.work.take(wake)?;
         if done.fitted {
             (self.tone.low, self.tone.high) = (done.tone.low, done.tone.high);
@@ -136,7 +127,7 @@ impl Inspector {
     }
 
     /// Shows the texels there are otherwise, when the tone was changed.
-    fn show_again(&mut self, before: Tone, fit: bool, wake: &Arc<dyn Fn() + Send + Sync>) {
+    fn show_again(&mut self, before: Tone, fit: bool, wake: &Wake) {
         if self.tone == before && !fit {
             return;
         }
@@ -170,14 +161,14 @@ impl Workbench {
     pub(crate) fn inspector_tab(&mut self, ui: &mut Ui, textures: &[TextureId]) {
         self.view_buttons(ui);
         if self.desired.sides[1].is_none() {
-            self.inspector.target.side = 0;
+            self.tabs.inspector.target.side = 0;
         } else {
             ui.horizontal(|ui| {
-                ui.selectable_value(&mut self.inspector.target.side, 0, "A");
-                ui.selectable_value(&mut self.inspector.target.side, 1, "B");
+                ui.selectable_value(&mut self.tabs.inspector.target.side, 0, "A");
+                ui.selectable_value(&mut self.tabs.inspector.target.side, 1, "B");
             });
         }
-        let Some(info) = self.sides[self.inspector.target.side].info.clone() else {
+        let Some(info) = self.sides[self.tabs.inspector.target.side].info.clone() else {
             ui.weak(self.waiting_text());
             return;
         };
@@ -186,14 +177,14 @@ impl Workbench {
             ui.weak("The graph has no textures");
             return;
         };
-        self.desired.inspect = Some(self.inspector.target.clone());
+        self.desired.inspect = Some(self.tabs.inspector.target.clone());
         ui.separator();
         egui::ScrollArea::vertical()
             .auto_shrink(false)
             .show(ui, |ui| {
                 self.tones(ui, &plan);
                 self.numbers(ui);
-                if !self.inspector.in_viewport && self.inspector.shown.is_some() {
+                if !self.tabs.inspector.in_viewport && self.tabs.inspector.shown.is_some() {
                     let size = Vec2::new(
                         ui.available_width(),
                         ui.available_width().max(ui.available_height()),
@@ -206,30 +197,37 @@ impl Workbench {
     /// Texture, mip, layer or slice.
     fn choose(&mut self, ui: &mut Ui, info: &GraphInfo) -> Option<TexturePlan> {
         let names: Vec<&str> = info.graph.textures.iter().map(|t| t.0.as_str()).collect();
-        if !names.contains(&self.inspector.target.texture.as_str()) {
+        if !names.contains(&self.tabs.inspector.target.texture.as_str()) {
             let preferred = info.graph.hdr.as_deref().or(info.graph.output.as_deref());
             let name = preferred.or(names.first().copied())?.to_string();
-            self.inspector.open(self.inspector.target.side, name);
+            self.tabs
+                .inspector
+                .open(self.tabs.inspector.target.side, name);
         }
         let mut chosen = None;
         let box_ = egui::ComboBox::from_id_salt("texture").width(ui.available_width() - 8.0);
-        let label = describe(info, &self.inspector.target.texture);
+        let label = describe(info, &self.tabs.inspector.target.texture);
         let menu = box_.height(500.0).selected_text(label).show_ui(ui, |ui| {
             for name in &names {
                 if ui
-                    .selectable_label(*name == self.inspector.target.texture, describe(info, name))
+                    .selectable_label(
+                        *name == self.tabs.inspector.target.texture,
+                        describe(info, name),
+                    )
                     .clicked()
                 {
                     chosen = Some((*name).to_string());
                 }
             }
         });
-        let shown = format!("texture {}", self.inspector.target.texture);
+        let shown = format!("texture {}", self.tabs.inspector.target.texture);
         named(&menu.response, egui::WidgetType::ComboBox, &shown);
         if let Some(name) = chosen {
-            self.inspector.open(self.inspector.target.side, name);
+            self.tabs
+                .inspector
+                .open(self.tabs.inspector.target.side, name);
         }
-        let target = &mut self.inspector.target;
+        let target = &mut self.tabs.inspector.target;
         let index = info.graph.texture(&target.texture)?;
         let help = &info.graph.textures[index].1.value.help;
         if !help.is_empty() {
@@ -266,12 +264,13 @@ impl Workbench {
             ui.add(Slider::new(&mut target.slice, 0..=size - 1).text("slice"));
         }
         let waits = self
+            .tabs
             .inspector
             .shown
             .as_ref()
-            .is_none_or(|s| s.decoded.target != self.inspector.target);
+            .is_none_or(|s| s.decoded.target != self.tabs.inspector.target);
         ui.horizontal(|ui| {
-            ui.checkbox(&mut self.inspector.in_viewport, "in the viewport")
+            ui.checkbox(&mut self.tabs.inspector.in_viewport, "in the viewport")
                 .on_hover_text("Where the render is; else below");
             if waits && plan.usage.is_empty() {
                 ui.weak("not made yet: no pass that runs uses it");
@@ -283,9 +282,9 @@ impl Workbench {
     }
 
     fn tones(&mut self, ui: &mut Ui, plan: &TexturePlan) {
-        let before = self.inspector.tone;
+        let before = self.tabs.inspector.tone;
         let mut fit = false;
-        let tone = &mut self.inspector.tone;
+        let tone = &mut self.tabs.inspector.tone;
         ui.horizontal_wrapped(|ui| {
             if plan.format.count >= 2 {
                 ui.selectable_value(&mut tone.channel, Channel::Rgb, "RGB");
@@ -326,11 +325,13 @@ impl Workbench {
             "The values are light and are encoded for the screen (sRGB); else they are shown as they are. rgba8_srgb holds encoded values",
         );
         tone.raw = !encoded;
-        self.inspector.show_again(before, fit, &self.wake);
+        self.tabs
+            .inspector
+            .show_again(before, fit, &self.setup.wake);
     }
 
     fn numbers(&mut self, ui: &mut Ui) {
-        let Some(done) = &self.inspector.shown else {
+        let Some(done) = &self.tabs.inspector.shown else {
             return;
         };
         let nan: usize = done.values.iter().map(|v| v.nan).sum();

@@ -1,4 +1,4 @@
-//! What the values of a texture are, as numbers and as a histogram.
+//! Statistics and histogram of a texture's values.
 
 use super::image::{Channel, Decoded, Tone};
 use rayon::prelude::*;
@@ -84,7 +84,7 @@ pub fn values(d: &Decoded) -> Vec<Values> {
         .collect()
 }
 
-/// How many values of each channel fall into each part of low to high; what lies outside is not counted.
+/// Histogram of each channel from low to high, without values outside.
 pub fn histogram(d: &Decoded, low: f32, high: f32) -> Vec<[u32; BINS]> {
     let count = (d.format.count as usize).min(4);
     let (low, high) = (low.min(high), low.max(high));
@@ -113,7 +113,7 @@ pub fn histogram(d: &Decoded, low: f32, high: f32) -> Vec<[u32; BINS]> {
     all
 }
 
-/// The range from the least to the greatest finite value of what is shown.
+/// The range of the finite values that are shown.
 pub fn fit(tone: &Tone, values: &[Values]) -> Tone {
     let shown: Vec<&Values> = match tone.channel {
         Channel::One(i) => values.iter().skip(i).take(1).collect(),

@@ -1,4 +1,5 @@
-//! The inspected texture in the viewport: nearest texels, whole steps of size, values under the pointer.
+//! The inspected texture in the viewport: nearest texels, whole steps of size, values under the
+//! pointer.
 
 use super::{INSPECTOR, Workbench, image};
 use crate::workbench::picture::view;
@@ -34,21 +35,21 @@ impl Workbench {
         let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::click_and_drag());
         let area = response.rect;
         let scale = ui.ctx().pixels_per_point();
-        if self.inspector.in_viewport {
-            self.area = [
+        if self.tabs.inspector.in_viewport {
+            self.layout.area = [
                 (area.width() * scale) as u32,
                 (area.height() * scale) as u32,
             ];
         }
         painter.rect_filled(area, 0.0, Color32::from_gray(12));
-        let Some(done) = &self.inspector.shown else {
+        let Some(done) = &self.tabs.inspector.shown else {
             return;
         };
         let size = Vec2::new(
             done.decoded.size[0].max(1) as f32,
             done.decoded.size[1].max(1) as f32,
         );
-        let pan_zoom = &mut self.inspector.pan_zoom;
+        let pan_zoom = &mut self.tabs.inspector.pan_zoom;
         let fitting = view::fit(area, done.decoded.size, scale).width() * scale / size.x;
         let rect = |pan_zoom: &PanZoom| {
             let texel = pan_zoom.zoom.unwrap_or(fitting) / scale;
@@ -89,7 +90,7 @@ impl Workbench {
         }
         let texel = shown.width() / size.x;
         self.under_pointer(&painter, pointer, shown, texel);
-        // Of what is shown: what was asked for last may be on its way.
+        // The shown texture, because the requested one may follow.
         let target = &done.decoded.target;
         let name = format!(
             "{} {}  mip {}  × {:.3}",
@@ -109,7 +110,7 @@ impl Workbench {
         shown: Rect,
         texel: f32,
     ) {
-        let Some(done) = &self.inspector.shown else {
+        let Some(done) = &self.tabs.inspector.shown else {
             return;
         };
         let Some(at) = pointer.filter(|p| shown.contains(*p)) else {
@@ -158,7 +159,8 @@ impl Workbench {
 /// Points that a notch of a common wheel scrolls.
 const NOTCH: f32 = 50.0;
 
-/// Whole steps of the wheel: 1 up, -1 down. Smooth scrolling comes in small parts, of which the first counts.
+/// Whole steps of the wheel: 1 up, -1 down. Smooth scrolling comes in small parts, of which the
+/// first counts.
 fn notch(ui: &Ui, wheel: f32) -> i32 {
     let id = ui.id().with("notch");
     let left: f32 = ui.data(|d| d.get_temp(id)).unwrap_or(0.0);

@@ -4,7 +4,7 @@ use super::Workbench;
 use crate::workbench::desired::edit;
 use egui::Ui;
 
-/// What the parameters of a view were before: side, name, value as RON.
+/// Earlier parameters of a view: side, name, value as RON.
 #[derive(Default)]
 pub struct Before(Vec<(usize, String, Option<String>)>);
 
@@ -18,7 +18,7 @@ impl Before {
 impl Workbench {
     /// A button for each view of the graph.
     pub(super) fn view_buttons(&mut self, ui: &mut Ui) {
-        let side = self.inspector.target.side;
+        let side = self.tabs.inspector.target.side;
         let Some(info) = self.sides[side].info.clone() else {
             return;
         };
@@ -38,9 +38,9 @@ impl Workbench {
                 }
             }
             let before = egui::Button::new("back");
-            let about = "Sets the parameters to what they were, and shows the texture again";
+            let about = "Restores the parameters and shows the texture again";
             back = ui
-                .add_enabled(!self.inspector.before.is_empty(), before)
+                .add_enabled(!self.tabs.inspector.before.is_empty(), before)
                 .on_hover_text(about)
                 .clicked();
         });
@@ -61,7 +61,7 @@ impl Workbench {
             let Ok(value) = param.parse(&text.value.0) else {
                 continue;
             };
-            let before = &mut self.inspector.before.0;
+            let before = &mut self.tabs.inspector.before.0;
             if !before.iter().any(|b| b.0 == side && b.1 == name.value) {
                 let old = desired
                     .params
@@ -76,7 +76,7 @@ impl Workbench {
 
     /// Puts the parameters back.
     fn leave_view(&mut self) {
-        for (side, name, old) in std::mem::take(&mut self.inspector.before.0) {
+        for (side, name, old) in std::mem::take(&mut self.tabs.inspector.before.0) {
             let Some(desired) = self.desired.sides[side].as_mut() else {
                 continue;
             };

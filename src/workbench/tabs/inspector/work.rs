@@ -1,10 +1,11 @@
-//! The work on texels, on a thread of its own and one piece at a time: megapixels must not hold up the window.
+//! The work on texels, on a thread of its own and one piece at a time: megapixels must not hold up
+//! the window.
 
 use super::image::{Decoded, Tone};
 use super::statistics::{self, BINS, Values};
 use crate::lab::Texels;
+use crate::workbench::background::{Background, Wake};
 use crate::workbench::desired::request::InspectTarget;
-use crossbeam_channel::{Receiver, Sender, unbounded};
 use std::sync::Arc;
 
 /// What to work on.
@@ -34,33 +35,17 @@ pub struct Done {
 type Job = (Source, Tone, bool);
 
 /// The work in progress.
+#[derive(Default)]
 pub struct Work {
-    busy: bool,
     next: Option<Job>,
-    channel: (Sender<Done>, Receiver<Done>),
-}
-
-impl Default for Work {
-    fn default() -> Self {
-        Work {
-            busy: false,
-            next: None,
-            channel: unbounded(),
-        }
-    }
+    work: Background<(), Done>,
 }
 
 impl Work {
-    /// Starts a piece of work, or keeps it until the one in progress is done; only the latest is kept. With `fit` the
-    /// range becomes that of the values.
-    pub fn start(
-        &mut self,
-        source: Source,
-        tone: Tone,
-        fit: bool,
-        wake: &Arc<dyn Fn() + Send + Sync>,
-    ) {
-        if self.busy {
+    /// Starts a piece of work, or keeps it until the one in progress is done; only the latest is
+    /// kept. With `fit` the range becomes that of the values.
+    pub fn start(&mut self, source: Source, tone: Tone, fit: bool, wake: &Wake) {
+        if self.work.is_working() {
             // New texels that wait must not be lost to a change of the range.
             self.next = Some(match (self.next.take(), source) {
                 (Some((new @ Source::New(..), _, fitted)), Source::Again(..)) => {
@@ -71,23 +56,16 @@ impl Work {
             });
             return;
         }
-        self.busy = true;
-        let (out, wake) = (self.channel.0.clone(), wake.clone());
-        std::thread::spawn(move || {
-            // A window that has closed waits for nothing.
-            let _ = out.send(run(source, tone, fit));
-            wake();
-        });
+        self.work.start((), wake, move || run(source, tone, fit));
     }
 
-    /// What has been done, if anything.
-    pub fn take(&mut self, wake: &Arc<dyn Fn() + Send + Sync>) -> Option<Done> {
-        let done = self.channel.1.try_recv().ok()?;
-        self.busy = false;
+    /// The finished work, if any.
+    pub fn take(&mut self, wake: &Wake) -> Option<Done> {
+        let ((), done) = self.work.take()?;
         if let Some((source, tone, fit)) = self.next.take() {
             self.start(source, tone, fit, wake);
         }
-        Some(done)
+        done.ok()
     }
 }
 

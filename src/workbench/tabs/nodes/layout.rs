@@ -1,4 +1,5 @@
-//! Where the passes of a graph are drawn: a column for each stage, passes below each other in the order they run.
+//! Where the passes of a graph are drawn: a column for each stage, passes below each other in the
+//! order they run.
 
 use crate::workbench::engine::report::GraphInfo;
 use egui::{Pos2, Rect, Vec2};
@@ -31,11 +32,11 @@ pub struct Node {
 
 /// The resource that a pass reads, from the pass that wrote it last.
 pub struct Edge {
-    /// Who wrote: place in the list of nodes, and among what that one writes.
+    /// The writer: index in the list of nodes, and among its outputs.
     pub from: (usize, usize),
     /// Who reads.
     pub to: usize,
-    /// Whether what is read is of the frame before.
+    /// Whether the read is of the last frame.
     pub of_last_frame: bool,
 }
 
@@ -54,7 +55,7 @@ pub struct Column {
 pub struct Layout {
     /// Passes in the graph's order.
     pub nodes: Vec<Node>,
-    /// What they pass on.
+    /// The edges between them.
     pub edges: Vec<Edge>,
     /// Stages.
     pub columns: Vec<Column>,
@@ -145,7 +146,7 @@ impl Layout {
             .expand(16.0)
     }
 
-    /// The passes, by their places here, that a pass needs in a frame: itself, and who writes what they read.
+    /// Indices of the passes that a pass needs in a frame: itself, and the writers of their inputs.
     pub fn needed_by(&self, node: usize) -> Vec<usize> {
         let mut needed = vec![node];
         let mut next = 0;

@@ -1,4 +1,4 @@
-//! The graph as nodes: what each pass reads and writes, what it takes, and which passes are left out.
+//! The graph as nodes: reads, writes and times of passes, and passes left out.
 
 mod layout;
 
@@ -15,7 +15,7 @@ use layout::{Layout, ROW, TITLE, WIDTH};
 use std::sync::Arc;
 
 pub(crate) const TAB: Tab = Tab {
-    middle: |workbench, ui, textures| match workbench.nodes.beside {
+    middle: |workbench, ui, textures| match workbench.tabs.nodes.beside {
         true => workbench.picture(ui, textures),
         false => workbench.graph_view(ui),
     },
@@ -30,7 +30,7 @@ pub struct Nodes {
     chosen: Option<String>,
     /// Whether it is to be brought to the middle.
     go: bool,
-    /// Text that names of passes, or of what they write, must hold.
+    /// Search text for names of passes and of their outputs.
     search: String,
     /// Whether the picture is in the middle, and not the graph.
     beside: bool,
@@ -41,7 +41,8 @@ pub struct Nodes {
     made: Option<(Arc<GraphInfo>, Vec2, Layout)>,
 }
 
-/// The least zoom at which a row's text is legible, about 7 points. Below it, a click anywhere on a pass opens the pass.
+/// The least zoom at which a row's text is legible, about 7 points. Below it, a click anywhere on a
+/// pass opens the pass.
 const READABLE: f32 = 0.6;
 
 /// A part of the layout.
@@ -49,11 +50,11 @@ const READABLE: f32 = 0.6;
 struct Seen {
     /// Points of the screen a point of the layout.
     zoom: f32,
-    /// What is at the upper left.
+    /// The point at the upper left.
     corner: Pos2,
 }
 
-/// What was asked for with a pass.
+/// The chosen action on a pass.
 enum Asked {
     Choose(String),
     Inspect(String),
@@ -81,6 +82,7 @@ impl Workbench {
     /// The graph in the viewport.
     pub(crate) fn graph_view(&mut self, ui: &mut Ui) {
         let side = self
+            .tabs
             .nodes
             .side
             .min(usize::from(self.desired.sides[1].is_some()));
@@ -89,15 +91,19 @@ impl Workbench {
             return;
         };
         let times = self
+            .tabs
             .times
             .means(ui.ctx(), side, self.desired.sides[1].is_some());
-        let chosen = self.nodes.chosen.clone();
+        let chosen = self.tabs.nodes.chosen.clone();
         let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
         let area = response.rect;
         ui.painter().rect_filled(area, 0.0, Color32::from_gray(12));
-        self.nodes.area = area.size();
-        let (mut seen, go) = (self.nodes.seen, std::mem::take(&mut self.nodes.go));
-        let layout = self.nodes.layout(&info);
+        self.tabs.nodes.area = area.size();
+        let (mut seen, go) = (
+            self.tabs.nodes.seen,
+            std::mem::take(&mut self.tabs.nodes.go),
+        );
+        let layout = self.tabs.nodes.layout(&info);
         let bounds = layout.bounds();
         let fit = (area.width() / bounds.width()).min(area.height() / bounds.height());
         let whole = Seen {
@@ -141,29 +147,29 @@ impl Workbench {
         };
         canvas.draw(&info, layout, &times.passes, chosen.as_deref());
         let asked = canvas.asked;
-        self.nodes.seen = seen;
+        self.tabs.nodes.seen = seen;
         match asked {
-            Some(Asked::Choose(name)) => self.nodes.chosen = Some(name),
+            Some(Asked::Choose(name)) => self.tabs.nodes.chosen = Some(name),
             Some(Asked::Inspect(texture)) => {
-                self.inspector.open(side, texture);
-                self.tab = crate::workbench::tabs::inspector::TAB;
+                self.tabs.inspector.open(side, texture);
+                self.tabs.open = crate::workbench::tabs::inspector::TAB;
             }
             None => {}
         }
     }
 
-    /// What is said of the chosen pass, and what can be done with it.
+    /// Details of the chosen pass, and actions on it.
     pub(crate) fn graph_tab(&mut self, ui: &mut Ui) {
         let both = self.desired.sides[1].is_some();
         if both {
             ui.horizontal(|ui| {
-                ui.selectable_value(&mut self.nodes.side, 0, "graph of A");
-                ui.selectable_value(&mut self.nodes.side, 1, "graph of B");
+                ui.selectable_value(&mut self.tabs.nodes.side, 0, "graph of A");
+                ui.selectable_value(&mut self.tabs.nodes.side, 1, "graph of B");
             });
         } else {
-            self.nodes.side = 0;
+            self.tabs.nodes.side = 0;
         }
-        let side = self.nodes.side;
+        let side = self.tabs.nodes.side;
         let (Some(info), Some(desired)) =
             (self.sides[side].info.clone(), &self.desired.sides[side])
         else {
@@ -193,10 +199,11 @@ impl Workbench {
             .auto_shrink(false)
             .show(ui, |ui| {
                 let name = self
+                    .tabs
                     .nodes
                     .chosen
                     .clone()
-                    .filter(|_| self.nodes.search.is_empty());
+                    .filter(|_| self.tabs.nodes.search.is_empty());
                 match name {
                     Some(name) => needed = self.chosen_pass(ui, side, &info, &name, &mut off),
                     None => self.pass_list(ui, side, &info),
@@ -218,7 +225,7 @@ impl Workbench {
 
     /// What of the graph is seen.
     fn graph_bar(&mut self, ui: &mut Ui) {
-        let nodes = &mut self.nodes;
+        let nodes = &mut self.tabs.nodes;
         ui.horizontal(|ui| {
             let width = ui.available_width() - 150.0;
             let field =
@@ -249,10 +256,12 @@ impl Workbench {
         }
     }
 
-    /// All passes, or those that are searched for: what runs with its time, the others with why not.
+    /// All passes, or those that match the search: with their time, or the reason why they do not
+    /// run.
     fn pass_list(&mut self, ui: &mut Ui, side: usize, info: &Arc<GraphInfo>) {
-        let needle = folded(&self.nodes.search);
+        let needle = folded(&self.tabs.nodes.search);
         let times = self
+            .tabs
             .times
             .means(ui.ctx(), side, self.desired.sides[1].is_some());
         let mut found = None;
@@ -299,12 +308,13 @@ impl Workbench {
             }
         }
         if let Some(name) = found {
-            self.nodes.search.clear();
-            self.nodes.find(side, &name);
+            self.tabs.nodes.search.clear();
+            self.tabs.nodes.find(side, &name);
         }
     }
 
-    /// Says of a pass what it is and does; the choice with which one that waits for a condition would run, once asked for.
+    /// Describes a pass. On request, a choice with which a pass that waits for a condition would
+    /// run.
     fn chosen_pass(
         &mut self,
         ui: &mut Ui,
@@ -326,6 +336,7 @@ impl Workbench {
         ui.strong(name);
         ui.label(format!("stage: {}", pass.stage()));
         if let Some((_, ms)) = self
+            .tabs
             .times
             .means(ui.ctx(), side, self.desired.sides[1].is_some())
             .passes
@@ -356,8 +367,7 @@ impl Workbench {
         }
         ui.horizontal(|ui| {
             let mut on = !off.iter().any(|o| o == name);
-            let about =
-                "Off, what it alone would write is what it says `instead`, or zeros. It is saved with the experiment";
+            let about = "If off, its output is its `instead`, or zeros. Saved with the experiment";
             if ui.checkbox(&mut on, "on").on_hover_text(about).changed() {
                 match on {
                     true => off.retain(|o| o != name),
@@ -368,7 +378,7 @@ impl Workbench {
             if ui.button("with | without").on_hover_text(about).clicked() {
                 self.with_and_without(side, info, name);
             }
-            let about = "Only this pass and what it needs; its first texture is shown in Inspect";
+            let about = "Only this pass and those that it needs; Inspect shows its first texture";
             if ui.button("solo").on_hover_text(about).clicked() {
                 self.solo(side, info, name, off);
             }
@@ -392,15 +402,15 @@ impl Workbench {
                     )
                     .clicked()
                 {
-                    self.inspector.open(side, resource.clone());
-                    self.tab = crate::workbench::tabs::inspector::TAB;
+                    self.tabs.inspector.open(side, resource.clone());
+                    self.tabs.open = crate::workbench::tabs::inspector::TAB;
                 }
             }
         }
         needed
     }
 
-    /// Puts what is shown beside itself without a pass.
+    /// Compares the picture with the same picture without a pass.
     fn with_and_without(&mut self, side: usize, info: &GraphInfo, name: &str) {
         let Some(base) = self.desired.sides[side].clone() else {
             return;
@@ -413,12 +423,13 @@ impl Workbench {
             Some(side)
         });
         self.compare_sides(sides);
-        self.nodes.beside = true;
+        self.tabs.nodes.beside = true;
     }
 
-    /// Leaves out every pass that a pass does not need, but those that make the picture, and shows what it writes.
+    /// Turns off every pass that a pass does not need, except those of the picture, and shows its
+    /// output.
     fn solo(&mut self, side: usize, info: &Arc<GraphInfo>, name: &str, off: &mut Vec<String>) {
-        let layout = self.nodes.layout(info);
+        let layout = self.tabs.nodes.layout(info);
         let Some(node) = layout.nodes.iter().position(|n| n.name == name) else {
             return;
         };
@@ -439,7 +450,7 @@ impl Workbench {
         *off = others.map(|(_, n)| n.name.clone()).collect();
         let texture = |w: &&String| info.graph.texture(w).is_some();
         if let Some(texture) = layout.nodes[node].writes.iter().find(texture).cloned() {
-            self.inspector.open(side, texture);
+            self.tabs.inspector.open(side, texture);
         }
     }
 }
@@ -469,7 +480,7 @@ fn of(info: &GraphInfo, texture: usize) -> String {
     format!("{format} {}x{}{depth}", plan.extent[0], plan.extent[1])
 }
 
-/// Zooms in steps, so that letters are not made anew in every size between.
+/// Zooms in steps, so that letters are not rasterised in every size between.
 fn stepped(zoom: f32) -> f32 {
     2f32.powf((zoom.max(1e-3).log2() * 6.0).round() / 6.0)
 }
@@ -686,7 +697,7 @@ impl Canvas<'_> {
     }
 }
 
-/// Where what a pass writes is named.
+/// Position of the name of an output.
 fn row_of(node: Rect, number: usize) -> Rect {
     let top = node.top() + ROW * (1.35 + number as f32);
     Rect::from_min_size(Pos2::new(node.left(), top), Vec2::new(WIDTH, ROW))

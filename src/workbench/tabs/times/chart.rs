@@ -91,7 +91,7 @@ fn round_below(x: f64) -> f64 {
         .unwrap_or(power)
 }
 
-/// Bottom left of the bar of frame `i`; the newest stands at the right edge.
+/// Bottom left of the bar of frame `i`; the newest is at the right edge.
 fn place(rect: Rect, count: usize, i: usize) -> (f32, f32) {
     let step = rect.width() / KEPT as f32;
     (rect.right() - step * (count - i) as f32, step)
@@ -117,7 +117,7 @@ fn mesh(rect: Rect, history: &History, top: f64, hovered: Option<&str>) -> Mesh 
         let (mut low, mut high) = (0.0, 0.0);
         for ((number, _), color) in history.passes.iter().zip(&colors) {
             high += frame.pass(*number) * scale;
-            // What cannot be seen costs no triangles: it is added to what comes next.
+            // Invisible parts cost no triangles: they are added to the next part.
             if high - low < 0.4 {
                 continue;
             }
@@ -173,13 +173,17 @@ fn under(rect: Rect, history: &History, top: f64, at: Pos2) -> Option<String> {
 mod tests {
     use super::super::history::Frame;
     use super::*;
+    use crate::graph::run::FrameTimes;
 
     #[test]
     fn bars_stand_where_the_pointer_finds_them() {
         let mut history = History::new(vec![(4, "below".into()), (7, "above".into())]);
         history.push(Frame {
-            gpu_ms: 3.0,
-            passes: vec![(4, 1.0), (7, 2.0)],
+            times: FrameTimes {
+                gpu_ms: 3.0,
+                passes: vec![(4, 1.0), (7, 2.0)],
+                ..FrameTimes::default()
+            },
             ..Frame::default()
         });
         let rect = Rect::from_min_size(Pos2::ZERO, Vec2::new(240.0, 100.0));

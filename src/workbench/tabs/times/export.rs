@@ -3,8 +3,8 @@
 use super::history::{Frame, History};
 use serde_json::{Value, json};
 
-/// A table: a row a frame of A, then of B; the columns after the fixed ones are passes by name, ms, empty where a side
-/// does not have the pass.
+/// A table: a row a frame of A, then of B; the columns after the fixed ones are passes by name, ms,
+/// empty where a side does not have the pass.
 ///
 /// # Errors
 /// Writing to memory gives none.
@@ -21,7 +21,7 @@ pub fn csv(sides: &[History; 2]) -> std::io::Result<Vec<u8>> {
     for (side, history) in ["A", "B"].iter().zip(sides) {
         for f in &history.frames {
             let mut row = vec![(*side).to_string(), f.frame.to_string()];
-            row.extend([f.time, f.cpu_ms, f.gpu_ms].map(|v| v.to_string()));
+            row.extend([f.time, f.times.cpu_ms, f.times.gpu_ms].map(|v| v.to_string()));
             row.extend(names.iter().map(|name| {
                 let pass = history.passes.iter().find(|p| p.1 == *name);
                 pass.map_or(String::new(), |p| f.pass(p.0).to_string())
@@ -36,7 +36,8 @@ const NOTE: &str = "Frames and passes are laid end to end by their GPU time, eac
     not kept, so gaps between frames and between passes, and how tracks lie against each other, mean nothing. The CPU \
     track holds recording and submitting, each begun no sooner than its frame on the GPU track.";
 
-/// A trace in Chrome's format, which Perfetto reads: a track for A, one for B, one for the CPU. Times in µs.
+/// A trace in Chrome's format, which Perfetto reads: a track for A, one for B, one for the CPU.
+/// Times in µs.
 pub fn trace(sides: &[History; 2]) -> Vec<u8> {
     let mut events =
         vec![json!({ "ph": "M", "name": "process_name", "pid": 1, "args": { "name": "conelab" } })];
@@ -47,7 +48,11 @@ pub fn trace(sides: &[History; 2]) -> Vec<u8> {
     for (i, (side, history)) in ["A", "B"].iter().zip(sides).enumerate() {
         let mut start = 0.0;
         for frame in &history.frames {
-            cpu.push((start, frame.cpu_ms * 1e3, format!("{side} {}", frame.frame)));
+            cpu.push((
+                start,
+                frame.times.cpu_ms * 1e3,
+                format!("{side} {}", frame.frame),
+            ));
             start = frame_events(&mut events, i + 1, start, history, frame);
         }
     }
@@ -83,7 +88,7 @@ fn frame_events(
         ));
         at += duration;
     }
-    at.max(start + frame.gpu_ms * 1e3)
+    at.max(start + frame.times.gpu_ms * 1e3)
 }
 
 fn complete(name: &str, track: usize, start: f64, duration: f64, args: Value) -> Value {
@@ -93,6 +98,7 @@ fn complete(name: &str, track: usize, start: f64, duration: f64, args: Value) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::graph::run::FrameTimes;
 
     fn sides() -> [History; 2] {
         let mut a = History::new(vec![(0, "draw, all".into()), (2, "tone".into())]);
@@ -100,12 +106,14 @@ mod tests {
         for i in 0..5_u32 {
             let t = f64::from(i) * 0.25;
             let frame = |passes| Frame {
+                times: FrameTimes {
+                    cpu_ms: 9.0,
+                    gpu_ms: 3.5 + t,
+                    passes,
+                    ..FrameTimes::default()
+                },
                 frame: u64::from(i),
                 time: t,
-                cpu_ms: 9.0,
-                gpu_ms: 3.5 + t,
-                passes,
-                ..Frame::default()
             };
             a.push(frame(vec![(0, 1.5 + t), (2, 2.0)]));
             b.push(frame(vec![(1, 0.5), (3, 0.125 + t)]));

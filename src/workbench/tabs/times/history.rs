@@ -1,5 +1,6 @@
 //! The times of the last frames, and the table made from them.
 
+use crate::graph::run::FrameTimes;
 use crate::results::stats::spread;
 use crate::workbench::engine::report::PictureReport;
 use std::collections::VecDeque;
@@ -14,38 +15,29 @@ pub struct Frame {
     pub frame: u64,
     /// Time of the scene, s.
     pub time: f64,
-    /// Recording and submitting, ms.
-    pub cpu_ms: f64,
-    /// First to last command on the GPU, ms.
-    pub gpu_ms: f64,
-    /// (pass number, ms).
-    pub passes: Vec<(usize, f64)>,
-    /// Numbers of the passes that slept.
-    pub asleep: Vec<usize>,
+    /// Times, without the picture.
+    pub times: FrameTimes,
 }
 
 impl Frame {
     /// The times of a picture's frame.
     pub fn of(p: &PictureReport) -> Frame {
-        let (passes, asleep) = (p.passes.clone(), p.asleep.clone());
         Frame {
             frame: p.frame,
             time: p.time,
-            cpu_ms: p.cpu_ms,
-            gpu_ms: p.gpu_ms,
-            passes,
-            asleep,
+            times: p.times.clone(),
         }
     }
 
     /// GPU time between the passes, ms.
     pub fn outside(&self) -> f64 {
-        (self.gpu_ms - self.passes.iter().map(|p| p.1).sum::<f64>()).max(0.0)
+        (self.times.gpu_ms - self.times.passes.iter().map(|p| p.1).sum::<f64>()).max(0.0)
     }
 
     /// Time of a pass, ms; a pass that ran several times has the sum.
     pub fn pass(&self, number: usize) -> f64 {
-        self.passes
+        self.times
+            .passes
             .iter()
             .filter(|p| p.0 == number)
             .map(|p| p.1)
@@ -95,9 +87,10 @@ impl History {
         (count > 0).then(|| self.last(count).map(time).sum::<f64>() / count as f64)
     }
 
-    /// The time that a chart should reach, ms: the 95th percentile and a bit, so that one slow frame flattens nothing.
+    /// The time that a chart should reach, ms: the 95th percentile and a bit, so that one slow
+    /// frame flattens nothing.
     pub fn top(&self) -> f64 {
-        let s = spread(self.frames.iter().map(|f| f.gpu_ms).collect());
+        let s = spread(self.frames.iter().map(|f| f.times.gpu_ms).collect());
         s.p95.max(1e-3) * 1.15
     }
 }
@@ -110,8 +103,8 @@ pub struct Row {
     pub is_pass: bool,
     /// Mean times of A and B, ms.
     pub mean: [Option<f64>; 2],
-    /// Whether it slept in the last frame of A, and in that of B.
-    pub asleep: [bool; 2],
+    /// Whether the last frame of A, and that of B, skipped it.
+    pub skipped: [bool; 2],
     /// Texts of the columns.
     pub cells: [String; 4],
 }
@@ -119,7 +112,7 @@ pub struct Row {
 impl Row {
     /// The name, with a mark if the last frame skipped the pass.
     pub fn title(&self, both: bool) -> String {
-        let skipped = match self.asleep {
+        let skipped = match self.skipped {
             [true, true] => " (skipped)",
             [true, false] if both => " (A skipped)",
             [true, false] => " (skipped)",
@@ -133,9 +126,10 @@ impl Row {
 /// The time of a row in a frame [ms].
 type Time<'a> = &'a dyn Fn(&Frame) -> f64;
 
-/// The rows: the passes of A in order, those that only B has, the rest of the GPU's time, and the totals. Means are used
-/// because they add up, and because passes that run once in several frames have a median of zero. With B the columns are
-/// the means of A and B over equally many frames, B/A, and the share of A; else mean, 95th percentile, share and maximum.
+/// The rows: the passes of A in order, those that only B has, the rest of the GPU's time, and the
+/// totals. Means are used because they add up, and because passes that run once in several frames
+/// have a median of zero. With B the columns are the means of A and B over equally many frames,
+/// B/A, and the share of A; else mean, 95th percentile, share and maximum.
 pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
     let mut names: Vec<&str> = a.passes.iter().map(|p| p.1.as_str()).collect();
     for (_, name) in b.iter().flat_map(|b| &b.passes) {
@@ -147,7 +141,7 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
     let none = History::default();
     let sides = [a, b.unwrap_or(&none)];
     let count = b.map_or(KEPT, |b| a.frames.len().min(b.frames.len()));
-    let total = a.mean(count, &|f| f.gpu_ms).unwrap_or(0.0);
+    let total = a.mean(count, &|f| f.times.gpu_ms).unwrap_or(0.0);
     let row = |name: &str, is_pass: bool, times: [Option<Time<'_>>; 2]| {
         let mean = [0, 1].map(|i| sides[i].mean(count, times[i]?));
         let alone: Vec<f64> = times[0]
@@ -178,16 +172,16 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
             name: name.into(),
             is_pass,
             mean,
-            asleep: [false; 2],
+            skipped: [false; 2],
             cells,
         }
     };
     let number = |h: &History, name: &str| h.passes.iter().find(|p| p.1 == name).map(|p| p.0);
-    let slept = |h: &History, name: &str| {
+    let was_skipped = |h: &History, name: &str| {
         h.frames
             .back()
             .zip(number(h, name))
-            .is_some_and(|(frame, number)| frame.asleep.contains(&number))
+            .is_some_and(|(frame, number)| frame.times.skipped.contains(&number))
     };
     let mut list: Vec<Row> = Vec::with_capacity(names.len() + 2);
     for name in names {
@@ -195,14 +189,14 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
             sides.map(|h| number(h, name).map(|number| move |frame: &Frame| frame.pass(number)));
         let times = [0, 1].map(|i| pass[i].as_ref().map(|time| time as Time<'_>));
         list.push(Row {
-            asleep: sides.map(|h| slept(h, name)),
+            skipped: sides.map(|h| was_skipped(h, name)),
             ..row(name, true, times)
         });
     }
     let all = |time: &'static dyn Fn(&Frame) -> f64| [Some(time), both.then_some(time)];
     list.push(row(OUTSIDE, false, all(&Frame::outside)));
-    list.push(row("GPU, first to last", false, all(&|f| f.gpu_ms)));
-    list.push(row(CPU, false, all(&|f| f.cpu_ms)));
+    list.push(row("GPU, first to last", false, all(&|f| f.times.gpu_ms)));
+    list.push(row(CPU, false, all(&|f| f.times.cpu_ms)));
     list
 }
 
@@ -237,9 +231,12 @@ mod tests {
         for t in times {
             let passes: Vec<(usize, f64)> = t.iter().copied().enumerate().collect();
             h.push(Frame {
-                gpu_ms: t.iter().sum(),
-                cpu_ms: 1.0,
-                passes,
+                times: FrameTimes {
+                    gpu_ms: t.iter().sum(),
+                    cpu_ms: 1.0,
+                    passes,
+                    ..FrameTimes::default()
+                },
                 ..Frame::default()
             });
         }
@@ -278,8 +275,11 @@ mod tests {
         for i in 0..8 {
             let passes = vec![(0, 1.0), (1, if i % 4 == 0 { 40.0 } else { 0.0 })];
             h.push(Frame {
-                gpu_ms: passes.iter().map(|p| p.1).sum::<f64>() + 0.5,
-                passes,
+                times: FrameTimes {
+                    gpu_ms: passes.iter().map(|p| p.1).sum::<f64>() + 0.5,
+                    passes,
+                    ..FrameTimes::default()
+                },
                 ..Frame::default()
             });
         }
@@ -290,25 +290,31 @@ mod tests {
     }
 
     #[test]
-    fn a_pass_sleeps_in_the_last_frame_or_not() {
+    fn a_pass_is_skipped_in_the_last_frame_or_not() {
         let mut h = history(&["x", "y"], &[&[1.0, 2.0]]);
         h.push(Frame {
-            passes: vec![(0, 0.0), (1, 2.0)],
-            asleep: vec![0],
+            times: FrameTimes {
+                passes: vec![(0, 0.0), (1, 2.0)],
+                skipped: vec![0],
+                ..FrameTimes::default()
+            },
             ..Frame::default()
         });
         assert_eq!(
             rows(&h, None)
                 .iter()
-                .map(|r| r.asleep[0])
+                .map(|r| r.skipped[0])
                 .collect::<Vec<_>>(),
             [true, false, false, false, false]
         );
         h.push(Frame {
-            passes: vec![(0, 1.0), (1, 2.0)],
+            times: FrameTimes {
+                passes: vec![(0, 1.0), (1, 2.0)],
+                ..FrameTimes::default()
+            },
             ..Frame::default()
         });
-        assert!(rows(&h, None).iter().all(|r| !r.asleep[0]));
+        assert!(rows(&h, None).iter().all(|r| !r.skipped[0]));
     }
 
     #[test]

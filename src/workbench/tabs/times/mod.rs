@@ -6,7 +6,7 @@ mod history;
 
 use super::Tab;
 use crate::files::FileError;
-use crate::graph::run::Redo;
+use crate::graph::run::Execution;
 use crate::results::timers;
 use crate::workbench::Workbench;
 use crate::workbench::engine::report::{GraphInfo, PassUses, PictureReport};
@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 
 pub(crate) const TAB: Tab = Tab::new("Time", |workbench, ui, _| workbench.times_tab(ui));
 
-/// How long a table stands before it is worked out anew.
+/// Interval between updates of a table.
 const TABLE_AGE: Duration = Duration::from_millis(250);
 /// Height of a row of the tables, points.
 const ROW: f32 = 16.0;
@@ -39,7 +39,7 @@ pub struct Times {
     scene_bytes: u64,
     /// Name of the pass under the pointer.
     hovered: Option<String>,
-    /// Of how many changes of a side's history, and since when.
+    /// The change count of a side's history, and its time.
     means: [Option<(u64, Instant, Arc<Means>)>; 2],
 }
 
@@ -69,7 +69,7 @@ impl Times {
         }
     }
 
-    /// A side runs something new: its times so far are of something else.
+    /// A side runs a new session, so its earlier times are dropped.
     pub fn built(&mut self, side: usize, info: &GraphInfo) {
         let pass = |i: &usize| {
             info.graph
@@ -95,7 +95,8 @@ impl Times {
         (self.made, self.means) = (None, [None, None]);
     }
 
-    /// Mean times of a side, computed as often as the table and not in every frame of the interface.
+    /// Mean times of a side, computed as often as the table and not in every frame of the
+    /// interface.
     pub fn means(&mut self, ui: &egui::Context, side: usize, both: bool) -> Arc<Means> {
         let history = &self.sides[side];
         if let Some((changes, since, known)) = &self.means[side] {
@@ -123,8 +124,8 @@ impl Times {
         let rests = history
             .frames
             .back()
-            .map_or(Vec::new(), |f| f.asleep.clone());
-        let total = of(&|f: &Frame| f.gpu_ms).unwrap_or(0.0);
+            .map_or(Vec::new(), |f| f.times.skipped.clone());
+        let total = of(&|f: &Frame| f.times.gpu_ms).unwrap_or(0.0);
         let outside = (OUTSIDE, of(&Frame::outside).unwrap_or(0.0));
         let made = Arc::new(Means {
             passes,
@@ -152,7 +153,7 @@ impl Workbench {
     /// The tab.
     pub(crate) fn times_tab(&mut self, ui: &mut Ui) {
         let both = self.desired.sides[1].is_some();
-        self.times.refresh(both);
+        self.tabs.times.refresh(both);
         egui::ScrollArea::vertical()
             .auto_shrink(false)
             .show(ui, |ui| {
@@ -162,15 +163,15 @@ impl Workbench {
                 let mut hovered = None;
                 let mut clicked = None;
                 let top = (0..=usize::from(both))
-                    .map(|i| self.times.sides[i].top())
+                    .map(|i| self.tabs.times.sides[i].top())
                     .fold(0.0, f64::max);
                 for i in 0..=usize::from(both) {
-                    let shown = self.times.charts[i].show(
+                    let shown = self.tabs.times.charts[i].show(
                         ui,
                         i,
-                        &self.times.sides[i],
+                        &self.tabs.times.sides[i],
                         top,
-                        self.times.hovered.as_deref(),
+                        self.tabs.times.hovered.as_deref(),
                     );
                     let Some((name, response)) = shown else {
                         continue;
@@ -183,9 +184,9 @@ impl Workbench {
                 }
                 ui.add_space(4.0);
                 head(ui, both);
-                for n in 0..self.times.rows.len() {
-                    let row = &self.times.rows[n];
-                    let response = line(ui, row, both, self.times.hovered.as_deref());
+                for n in 0..self.tabs.times.rows.len() {
+                    let row = &self.tabs.times.rows[n];
+                    let response = line(ui, row, both, self.tabs.times.hovered.as_deref());
                     if !row.is_pass || !response.hovered() {
                         continue;
                     }
@@ -196,59 +197,73 @@ impl Workbench {
                     response.on_hover_text_at_pointer(self.pass_text(side, &name));
                     hovered = Some(name);
                 }
-                self.times.hovered = hovered;
+                self.tabs.times.hovered = hovered;
                 if let Some((side, name)) = clicked {
                     self.inspect_pass(side, &name);
                 }
                 ui.separator();
-                memory(ui, &self.times.memory, self.times.scene_bytes);
+                memory(ui, &self.tabs.times.memory, self.tabs.times.scene_bytes);
             });
     }
 
     fn exports(&mut self, ui: &mut Ui) {
         let mut file = None;
         ui.horizontal(|ui| {
-            let some = self.times.sides.iter().any(|s| !s.frames.is_empty());
+            let some = self.tabs.times.sides.iter().any(|s| !s.frames.is_empty());
             let button = |text: &str| egui::Button::new(text).small();
             if ui
                 .add_enabled(some, button("CSV"))
                 .on_hover_text("A row a frame, a column a pass, into captures/")
                 .clicked()
             {
-                file = Some(("csv", export::csv(&self.times.sides)));
+                file = Some(("csv", export::csv(&self.tabs.times.sides)));
             }
             let about = "For Perfetto or chrome://tracing, into captures/";
-            if ui.add_enabled(some, button("trace")).on_hover_text(about).clicked() {
-                file = Some(("json", Ok(export::trace(&self.times.sides))));
-            }
-            let mut changed = self.desired.redo == Redo::Changed;
-            let about =
-                "Passes run whose outcome would be another, the rest sleeps: the picture is the same, to the bit";
-            if ui.toggle_value(&mut changed, egui::RichText::new("what changes").small()).on_hover_text(about).clicked()
+            if ui
+                .add_enabled(some, button("trace"))
+                .on_hover_text(about)
+                .clicked()
             {
-                self.desired.redo = if changed { Redo::Changed } else { Redo::All };
+                file = Some(("json", Ok(export::trace(&self.tabs.times.sides))));
             }
-            ui.weak(format!("the last {} frames", self.times.sides[0].frames.len()));
+            let mut changed = self.desired.execution == Execution::Incremental;
+            let about =
+                "Skips passes whose output would not change. The picture stays equal to the bit";
+            if ui
+                .toggle_value(&mut changed, egui::RichText::new("what changes").small())
+                .on_hover_text(about)
+                .clicked()
+            {
+                self.desired.execution = if changed {
+                    Execution::Incremental
+                } else {
+                    Execution::Full
+                };
+            }
+            ui.weak(format!(
+                "the last {} frames",
+                self.tabs.times.sides[0].frames.len()
+            ));
         });
         if let Some((ending, bytes)) = file {
-            self.export(&format!("times-{}", self.name), ending, bytes);
+            self.export(&format!("times-{}", self.experiment.name), ending, bytes);
         }
     }
 
-    /// Writes what was made into `captures/`, and says so.
+    /// Writes an export into `captures/`, with a message.
     pub(crate) fn export(&mut self, name: &str, ending: &str, bytes: std::io::Result<Vec<u8>>) {
         let written = bytes.map_err(|e| FileError::content(name.as_ref(), e));
-        let written = written.and_then(|b| write_free(&self.root, name, ending, &b));
+        let written = written.and_then(|b| write_free(&self.setup.home.root, name, ending, &b));
         let ok = written.is_ok();
         let text = match written {
             Ok(path) => format!("wrote {}", path.display()),
             Err(e) => format!("not written: {e}"),
         };
         self.event("exported", serde_json::json!({ "ok": ok, "text": text }));
-        self.status = text;
+        self.messages.status = text;
     }
 
-    /// What a pass writes, for people.
+    /// The outputs of a pass in words.
     fn pass_text(&self, side: usize, name: &str) -> String {
         let list = self.pass_writes(side, name).join(", ");
         match list.is_empty() {
@@ -277,11 +292,11 @@ impl Workbench {
         };
         let texture = |n: &&String| info.graph.texture(n).is_some();
         let Some(texture) = self.pass_writes(side, name).iter().find(texture).cloned() else {
-            self.status = format!("{name} writes no texture");
+            self.messages.status = format!("{name} writes no texture");
             return;
         };
-        self.inspector.open(side, texture);
-        self.tab = crate::workbench::tabs::inspector::TAB;
+        self.tabs.inspector.open(side, texture);
+        self.tabs.open = crate::workbench::tabs::inspector::TAB;
     }
 }
 
@@ -367,10 +382,10 @@ fn line(ui: &mut Ui, row: &Row, both: bool, hovered: Option<&str>) -> Response {
         ui.painter()
             .rect_filled(rect, 2.0, ui.visuals().widgets.hovered.weak_bg_fill);
     }
-    // What slept in both is grey.
-    let slept = [0, 1].map(|side| row.mean[side].is_none() || row.asleep[side]) == [true; 2]
-        && row.asleep != [false; 2];
-    let color = if slept {
+    // Passes skipped on both sides are grey.
+    let skipped = [0, 1].map(|side| row.mean[side].is_none() || row.skipped[side]) == [true; 2]
+        && row.skipped != [false; 2];
+    let color = if skipped {
         ui.visuals().weak_text_color()
     } else {
         ui.visuals().text_color()
