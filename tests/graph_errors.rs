@@ -2195,7 +2195,7 @@ fn structs_of_the_scene_that_the_program_fills_otherwise() {
     let right = "vec3 place;\nuint kind;\nvec4 rest[3];";
     assert_eq!(light(right, "kind"), "");
     assert_snapshot!(light("uint kind;\nvec3 position;\nvec4 rest[2];", "kind"), @r"
-    shaders/fill.comp:7: error: 'kind' of 'lights' lies at byte 12, and the shader declares it at 0
+    shaders/fill.comp:7: error: 'kind' of 'lights' is at byte 12, and the shader declares it at 0
         | uint kind;
     ");
     assert_snapshot!(light("vec3 position;\nuint kind;", "kind"), @r"

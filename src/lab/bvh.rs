@@ -2,7 +2,7 @@
 //! (`shaders/reference/intersect.glsl`).
 
 use super::emitters::Emitters;
-use super::interface::DrawBlock;
+use super::shape::Shape;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec3A};
 use obvhs::bvh2::Bvh2;
@@ -25,17 +25,6 @@ struct TriangleBlock {
     flags: u32,
 }
 
-/// The triangles of a scene, independent of its pose.
-pub(super) struct Soup<'a> {
-    pub positions: &'a [f32],
-    pub indices: &'a [u32],
-    pub draws: &'a [DrawBlock],
-    /// First index of each mesh.
-    pub first_index: &'a [u32],
-    /// Whether the draw's material has an alpha mask.
-    pub masked: &'a dyn Fn(&DrawBlock) -> bool,
-}
-
 /// Content of the buffers `bvhNodes` and `bvhTriangles`.
 pub(super) struct Hierarchy {
     pub nodes: Vec<u8>,
@@ -56,12 +45,8 @@ pub(super) fn capacity(triangles: usize) -> (usize, usize) {
 
 /// Builds the hierarchy; `model` is the pose of an instance. Costs about a second a million
 /// triangles.
-pub(super) fn build(
-    soup: &Soup<'_>,
-    emitters: &Emitters,
-    model: &dyn Fn(u32) -> Mat4,
-) -> Hierarchy {
-    let blocks = triangles(soup, emitters, model);
+pub(super) fn build(shape: &Shape, emitters: &Emitters, model: &dyn Fn(u32) -> Mat4) -> Hierarchy {
+    let blocks = triangles(shape, emitters, model);
     let corners: Vec<Triangle> = blocks
         .iter()
         .map(|t| Triangle {
@@ -100,20 +85,20 @@ pub(super) fn build(
 }
 
 fn triangles(
-    soup: &Soup<'_>,
+    shape: &Shape,
     emitters: &Emitters,
     model: &dyn Fn(u32) -> Mat4,
 ) -> Vec<TriangleBlock> {
     let mut blocks = Vec::new();
-    for (number, draw) in (0u32..).zip(soup.draws) {
+    for (number, draw) in (0u32..).zip(&shape.draws) {
         let model = model(draw.instance);
-        let masked = u32::from((soup.masked)(draw)) << 31;
+        let masked = u32::from(number as usize >= shape.opaque) << 31;
         let corner = |i: u32| {
-            let v = 3 * soup.indices[i as usize] as usize;
+            let v = 3 * shape.indices[i as usize] as usize;
             let p = Vec3::new(
-                soup.positions[v],
-                soup.positions[v + 1],
-                soup.positions[v + 2],
+                shape.positions[v],
+                shape.positions[v + 1],
+                shape.positions[v + 2],
             );
             model.transform_point3(p).to_array()
         };

@@ -1,8 +1,8 @@
 //! Emitting triangles as shaders draw places on them (`shaders/lights/emitters.glsl`).
 
-use super::attributes::{Attributes, color_of, uv_of};
-use super::bvh::Soup;
+use super::attributes::{color_of, uv_of};
 use super::interface::{EmitterBlock, InstanceBlock};
+use super::shape::Shape;
 use crate::scene::{Lookup, Scene, Side, SmallPicture};
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use std::collections::{HashMap, HashSet};
@@ -54,13 +54,13 @@ pub(super) struct Emitters {
 
 impl Emitters {
     /// Parts of all emitting triangles; none if there are more than [`MOST_EMITTERS`].
-    pub(super) fn new(scene: &Scene, soup: &Soup<'_>, attributes: &[Attributes]) -> Emitters {
+    pub(super) fn new(scene: &Scene, shape: &Shape) -> Emitters {
         let mut pictures: HashMap<u32, Option<SmallPicture>> = HashMap::new();
         let mut outsides: HashMap<u32, Vec<Option<Side>>> = HashMap::new();
         let (low, high) = scene.bounds();
         let mut found = Emitters::default();
         let mut count = 0u32;
-        for (number, draw) in (0u32..).zip(soup.draws) {
+        for (number, draw) in (0u32..).zip(&shape.draws) {
             let Some(material) = scene.materials.get(draw.material as usize) else {
                 continue;
             };
@@ -68,11 +68,11 @@ impl Emitters {
             let triangles = (draw.first_index..draw.first_index + draw.index_count)
                 .step_by(3)
                 .map(|first| {
-                    let vertices = [0, 1, 2].map(|k| soup.indices[(first + k) as usize] as usize);
+                    let vertices = [0, 1, 2].map(|k| shape.indices[(first + k) as usize] as usize);
                     (
                         first,
                         vertices,
-                        vertices.map(|v| Vec3::from_slice(&soup.positions[3 * v..3 * v + 3])),
+                        vertices.map(|v| Vec3::from_slice(&shape.positions[3 * v..3 * v + 3])),
                     )
                 });
             for (_, _, corners) in triangles.clone() {
@@ -112,8 +112,8 @@ impl Emitters {
                 cutoff: material.alpha_cutoff / material.base_color.w.max(1e-6),
             };
             for (first, vertices, corners) in triangles {
-                let uvs = vertices.map(|v| uv_of(&attributes[v]));
-                let tints = vertices.map(|v| color_of(&attributes[v]));
+                let uvs = vertices.map(|v| uv_of(&shape.attributes[v]));
+                let tints = vertices.map(|v| color_of(&shape.attributes[v]));
                 let parts = shine.parts(uvs, tints);
                 let mean = |part| {
                     shine.mean(
@@ -127,7 +127,7 @@ impl Emitters {
                     return Emitters::default();
                 }
                 let outside = outside
-                    .get((first - soup.first_index[mesh as usize]) as usize / 3)
+                    .get((first - shape.first_index[mesh as usize]) as usize / 3)
                     .copied()
                     .flatten();
                 let key = (number, first);

@@ -2,18 +2,18 @@
 //! (`shaders/common/scene.glsl`).
 
 use super::attributes::{self, Attributes};
-use super::bvh::{self, Soup};
+use super::bvh;
 use super::dielectrics::Dielectrics;
 use super::emitters::Emitters;
 use super::interface::{
-    CameraBlock, DrawBlock, InstanceBlock, LightBlock, MATERIAL_TEXTURES, MaterialBlock,
-    SceneInfoBlock, ShadowBlock,
+    CameraBlock, InstanceBlock, MATERIAL_TEXTURES, MaterialBlock, SceneInfoBlock,
 };
-use super::materials;
+use super::lighting::Lighting;
+use super::materials::{self, MaterialTextures};
+use super::shape::{Shape, count};
 use super::sky;
-use super::view::lights;
 use crate::graph::run::{Geometry, SceneResources, Update};
-use crate::scene::{Environment, Instance, Light, Lookup, Material, Scene, Vertex, in_world};
+use crate::scene::{Instance, Light, Lookup, Material, Scene, Vertex, in_world};
 use crate::vulkan::{Buffer, Gpu, Result, Sampler, SamplerDesc, Upload, VulkanError, vk};
 use glam::{Mat4, Vec3};
 use std::borrow::Cow;
@@ -25,69 +25,96 @@ use std::sync::Arc;
 pub struct SceneGpu {
     /// Resources by name, and the draws.
     pub resources: SceneResources,
-    /// The block `camera`, written every frame.
-    pub camera: Arc<Buffer>,
     /// Bytes of geometry and textures.
     pub bytes: u64,
     /// Where the shaders' world begins in the scene's.
     pub origin: Vec3,
-    info: SceneInfoBlock,
-    lighting: Lighting,
-    bounds: (Vec3, Vec3),
-    instances: Arc<Buffer>,
-    sent: Vec<InstanceBlock>,
-    /// When vertices are as they were sent last, s.
-    posed_at: f32,
+    own: Own,
     /// The uploaded scene, with split triangles if they were split.
     scene: Arc<Scene>,
     emitters: Arc<Emitters>,
 }
 
-/// The present lighting of the scene.
+/// Content that changes from frame to frame, which each program has of its own.
 #[derive(Clone)]
-struct Lighting {
-    lights: Vec<Light>,
-    /// Factor of the sky's picture, or its radiance.
-    sky: Vec3,
-    environment: Option<Environment>,
-    /// Divisor of the picture on the device.
-    sky_scale: f32,
+struct Own {
+    buffers: Buffers,
+    info: SceneInfoBlock,
+    lighting: Lighting,
+    sent: Vec<InstanceBlock>,
+    /// Time of the vertices that were sent last [s].
+    posed_at: f32,
 }
 
-impl Lighting {
-    fn of(scene: &Scene) -> Lighting {
-        let (lights, environment) = (scene.lights.clone(), scene.environment.clone());
-        Lighting {
-            lights,
-            sky: scene.sky,
-            sky_scale: sky::scale_of(environment.as_ref()),
-            environment,
+impl Own {
+    fn new(
+        upload: &mut Upload,
+        (scene, origin): (&Scene, Vec3),
+        shape: &Shape,
+        emitters: &Emitters,
+        rays: bool,
+    ) -> Result<Own> {
+        let (low, high) = scene.bounds();
+        let lighting = Lighting::of(scene);
+        let (lights, shadows) = lighting.blocks((low, high), origin);
+        let info = lighting.inform(SceneInfoBlock {
+            bounds_min: (low - origin).to_array(),
+            light_count: count(lights.len()),
+            bounds_max: (high - origin).to_array(),
+            shadow_views: count(shadows.len()),
+            sky: [0.0; 3],
+            triangle_count: shape.triangle_count(),
+            draw_count: count(shape.draws.len()),
+            vertex_count: count(shape.positions.len() / 3),
+            instance_count: count(scene.instances.len()),
+            sky_turn: 0.0,
+        });
+        let sent = instances(scene, origin, 0.0, None, false);
+        let mut buffers = Buffers::new();
+        let mut add = |name, bytes: &[u8], usage| -> Result<()> {
+            buffers.insert(name, upload.buffer(name, bytes, usage)?);
+            Ok(())
+        };
+        add("camera", &[0; size_of::<CameraBlock>()], UNIFORM)?;
+        add("sceneInfo", bytemuck::bytes_of(&info), UNIFORM)?;
+        add("lights", bytemuck::cast_slice(&lights), STORAGE)?;
+        add("shadowViews", bytemuck::cast_slice(&shadows), STORAGE)?;
+        add("instances", bytemuck::cast_slice(&sent), STORAGE)?;
+        add("emitters", &emitters.buffer(&sent, None), STORAGE)?;
+        if !scene.deformers.is_empty() {
+            add("positions", bytemuck::cast_slice(&shape.positions), STORAGE)?;
+            add(
+                "attributes",
+                bytemuck::cast_slice(&shape.attributes),
+                STORAGE,
+            )?;
         }
-    }
-
-    /// The lights' blocks and shadow views, that of the sky's sun last.
-    fn blocks(&self, bounds: (Vec3, Vec3), origin: Vec3) -> (Vec<LightBlock>, Vec<ShadowBlock>) {
-        let sun = self
-            .environment
-            .as_ref()
-            .and_then(|e| e.sun(self.sky, e.rotation));
-        let all: Vec<Light> = self.lights.iter().cloned().chain(sun).collect();
-        lights((&all, self.lights.len()), bounds, origin)
-    }
-
-    /// The part of `sceneInfo` that changes with it.
-    fn inform(&self, info: SceneInfoBlock) -> SceneInfoBlock {
-        let rotation = self.environment.as_ref().map(|e| e.rotation);
-        SceneInfoBlock {
-            sky: (self.sky * self.sky_scale).to_array(),
-            sky_turn: sky::turn_of(rotation),
-            ..info
+        if rays {
+            let mut found = hierarchy(shape, emitters, &sent);
+            // With room for the hierarchy of any other pose.
+            let (nodes, triangles) = bvh::capacity(info.triangle_count as usize);
+            found.nodes.resize(found.nodes.len().max(nodes), 0);
+            found
+                .triangles
+                .resize(found.triangles.len().max(triangles), 0);
+            add("bvhNodes", &found.nodes, STORAGE)?;
+            add("bvhTriangles", &found.triangles, STORAGE)?;
         }
+        Ok(Own {
+            buffers,
+            info,
+            lighting,
+            sent,
+            posed_at: 0.0,
+        })
     }
 }
 
-/// Bytes of the block `camera`.
-const CAMERA_BYTES: usize = size_of::<CameraBlock>();
+/// Buffers by name.
+type Buffers = HashMap<&'static str, Arc<Buffer>>;
+
+const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::STORAGE_BUFFER;
+const UNIFORM: vk::BufferUsageFlags = vk::BufferUsageFlags::UNIFORM_BUFFER;
 
 impl SceneGpu {
     /// Uploads a scene into a world that begins at `origin`; `rays`: with the hierarchy that rays
@@ -96,261 +123,72 @@ impl SceneGpu {
     /// # Errors
     /// Out of memory; a hierarchy that is too deep.
     pub fn new(gpu: &Arc<Gpu>, scene: Arc<Scene>, origin: Vec3, rays: bool) -> Result<SceneGpu> {
-        let whole = scene;
-        let scene = &*whole;
         let mut upload = Upload::new(gpu);
-        let textures = materials::upload(gpu, scene, &mut upload)?;
+        let textures = materials::upload(gpu, &scene, &mut upload)?;
         let sky = sky::texture(gpu, scene.environment.as_ref(), &mut upload)?;
-        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let (positions, attributes, indices, first_index) =
-            vertices(scene, &scene.posed_meshes(0.0));
-        let draws = draws(scene, &first_index);
-        let triangles = triangles(&draws, &indices, &positions, &attributes);
-        let opaque = draws.iter().filter(|d| !is_masked(scene, d)).count();
-        // One command (VkDrawIndexedIndirectCommand) a draw; the instance number tells the shaders
-        // which.
-        let commands: Vec<[u32; 5]> = (0u32..)
-            .zip(&draws)
-            .map(|(i, d)| [d.index_count, 1, d.first_index, 0, i])
-            .collect();
-        let (low, high) = scene.bounds();
-        let lighting = Lighting::of(scene);
-        let (light_blocks, shadow_blocks) = lighting.blocks((low, high), origin);
-        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-        let info = lighting.inform(SceneInfoBlock {
-            bounds_min: (low - origin).to_array(),
-            light_count: count(light_blocks.len()),
-            bounds_max: (high - origin).to_array(),
-            shadow_views: count(shadow_blocks.len()),
-            sky: [0.0; 3],
-            triangle_count: count(draws.iter().map(|d| d.index_count as usize / 3).sum()),
-            draw_count: count(draws.len()),
-            vertex_count: count(positions.len() / 3),
-            instance_count: count(scene.instances.len()),
-            sky_turn: 0.0,
-        });
-        let dielectrics = Dielectrics::of(&scene.materials);
-        let colored = attributes::colored_materials(scene);
-        let handle = |t: Option<u32>, lookup: Lookup| textures.handle(t, lookup);
-        let material_blocks: Vec<MaterialBlock> = (0u32..)
-            .zip(&scene.materials)
-            .map(|(i, m)| material(m, dielectrics.number(m), colored.contains(&i), &handle))
-            .collect();
-        let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
-        let index = vk::BufferUsageFlags::INDEX_BUFFER | storage;
-        let index_buffer = upload.buffer("indices", bytemuck::cast_slice(&indices), index)?;
-        let command_buffer = upload.buffer(
+        let shape = Shape::at_rest(&scene);
+        let emitters = Arc::new(Emitters::new(&scene, &shape));
+        let colored = attributes::colored_materials(&scene);
+        let mut buffers = shared_buffers(&mut upload, &scene, &shape, &textures, &colored)?;
+        if rays {
+            let texels = sky::texels(scene.environment.as_ref());
+            let texels = upload.buffer("skyTexels", bytemuck::cast_slice(&texels), STORAGE)?;
+            buffers.insert("skyTexels", texels);
+        }
+        let commands = upload.buffer(
             "draw commands",
-            bytemuck::cast_slice(&commands),
+            bytemuck::cast_slice(&shape.commands()),
             vk::BufferUsageFlags::INDIRECT_BUFFER,
         )?;
-        let instance_blocks = instances(scene, origin, 0.0, None, false);
-        let instances =
-            upload.buffer("instances", bytemuck::cast_slice(&instance_blocks), storage)?;
-        let camera = upload.buffer("camera", &[0; CAMERA_BYTES], uniform)?;
-        let masked = |d: &DrawBlock| is_masked(scene, d);
-        let soup = Soup {
-            positions: &positions,
-            indices: &indices,
-            draws: &draws,
-            first_index: &first_index,
-            masked: &masked,
-        };
-        let emitters = Arc::new(Emitters::new(scene, &soup, &attributes));
-        let mut buffers = HashMap::from([
-            ("camera", camera.clone()),
-            ("indices", index_buffer.clone()),
-            (
-                "sceneInfo",
-                upload.buffer("sceneInfo", bytemuck::bytes_of(&info), uniform)?,
-            ),
-            (
-                "lights",
-                upload.buffer("lights", bytemuck::cast_slice(&light_blocks), storage)?,
-            ),
-            (
-                "shadowViews",
-                upload.buffer("shadowViews", bytemuck::cast_slice(&shadow_blocks), storage)?,
-            ),
-            (
-                "materials",
-                upload.buffer("materials", bytemuck::cast_slice(&material_blocks), storage)?,
-            ),
-            (
-                "dielectrics",
-                upload.buffer(
-                    "dielectrics",
-                    bytemuck::cast_slice(&dielectrics.list),
-                    storage,
-                )?,
-            ),
-            ("instances", instances.clone()),
-            (
-                "draws",
-                upload.buffer("draws", bytemuck::cast_slice(&draws), storage)?,
-            ),
-            (
-                "triangles",
-                upload.buffer("triangles", bytemuck::cast_slice(&triangles), storage)?,
-            ),
-            (
-                "emitters",
-                upload.buffer(
-                    "emitters",
-                    &emitters.buffer(&instance_blocks, None),
-                    storage,
-                )?,
-            ),
-            (
-                "positions",
-                upload.buffer("positions", bytemuck::cast_slice(&positions), storage)?,
-            ),
-            (
-                "attributes",
-                upload.buffer("attributes", bytemuck::cast_slice(&attributes), storage)?,
-            ),
-        ]);
-        if rays {
-            let found = hierarchy(&soup, &emitters, &instance_blocks);
-            buffers.extend(ray_buffers(&mut upload, found, &info)?);
-            let texels = sky::texels(scene.environment.as_ref());
-            buffers.insert(
-                "skyTexels",
-                upload.buffer("skyTexels", bytemuck::cast_slice(&texels), storage)?,
-            );
-        }
-        let limit = u64::from(gpu.info.limits.max_storage_buffer_range);
-        if let Some((name, buffer)) = buffers.iter().find(|(_, b)| b.size > limit) {
-            return Err(VulkanError::Limit {
-                what: format!("the scene's buffer '{name}'"),
-                asked: format!("{} bytes", buffer.size),
-                limit: format!("{limit} bytes (fewer triangles, or less splitting, would fit)"),
-                device: gpu.info.name.clone(),
-            });
-        }
+        let own = Own::new(&mut upload, (&scene, origin), &shape, &emitters, rays)?;
+        buffers.extend(own.buffers.clone());
+        check_sizes(gpu, &buffers)?;
         upload.finish()?;
         let bytes = buffers.values().map(|b| b.size).sum::<u64>() + textures.bytes + sky.bytes;
-        let sampler = Arc::new(Sampler::new(
-            gpu,
-            &SamplerDesc {
-                filter: vk::Filter::LINEAR,
-                mip_filter: vk::SamplerMipmapMode::LINEAR,
-                address: vk::SamplerAddressMode::REPEAT,
-                border: vk::BorderColor::FLOAT_TRANSPARENT_BLACK,
-                compare: None,
-                anisotropic: true,
-            },
-        )?);
+        let textures = MATERIAL_TEXTURES.into_iter().zip(textures.views);
+        let draws = shape.draws.iter().map(|d| (d.first_index, d.index_count));
+        let geometry = Geometry {
+            indices: buffers["indices"].clone(),
+            commands,
+            draws: draws.collect(),
+            opaque: count(shape.opaque),
+        };
+        let resources = SceneResources {
+            buffers,
+            textures: textures.chain([("skyTexture", sky.view)]).collect(),
+            sampler: Arc::new(Sampler::new(gpu, &SAMPLER)?),
+            geometry,
+            constants: attributes::constants(&scene, &colored),
+        };
         Ok(SceneGpu {
-            resources: SceneResources {
-                buffers,
-                textures: MATERIAL_TEXTURES
-                    .into_iter()
-                    .zip(textures.views)
-                    .chain([("skyTexture", sky.view)])
-                    .collect(),
-                sampler,
-                geometry: Geometry {
-                    indices: index_buffer,
-                    commands: command_buffer,
-                    draws: draws
-                        .iter()
-                        .map(|d| (d.first_index, d.index_count))
-                        .collect(),
-                    opaque: count(opaque),
-                },
-                constants: attributes::constants(scene, &colored),
-            },
-            camera,
+            resources,
             bytes,
             origin,
-            info,
-            lighting,
-            bounds: (low, high),
-            instances,
-            sent: instance_blocks,
-            posed_at: 0.0,
-            scene: whole,
+            own,
+            scene,
             emitters,
         })
     }
 
-    /// The same geometry and textures with buffers of its own for what changes from frame to frame,
-    /// so that two programs can run on one upload.
+    /// The same geometry and textures with buffers of its own for content that changes from frame
+    /// to frame, so that two programs can run on one upload.
     ///
     /// # Errors
     /// Out of memory.
     pub fn fork(&self, gpu: &Arc<Gpu>) -> Result<SceneGpu> {
-        let scene = &*self.scene;
-        let (origin, bounds) = (self.origin, self.bounds);
         let mut upload = Upload::new(gpu);
-        let mut resources = self.resources.clone();
-        let sent = instances(scene, origin, 0.0, None, false);
-        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let instances = upload.buffer("instances", bytemuck::cast_slice(&sent), storage)?;
-        let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
-        let camera = upload.buffer("camera", &[0; CAMERA_BYTES], uniform)?;
-        let lighting = Lighting::of(scene);
-        let info = lighting.inform(self.info);
-        let (light_blocks, shadow_blocks) = lighting.blocks(bounds, origin);
-        // Vertices that move are the other program's own too.
-        let posed =
-            (!scene.deformers.is_empty()).then(|| vertices(scene, &scene.posed_meshes(0.0)));
-        if let Some((positions, attributes, ..)) = &posed {
-            let shape = [
-                (
-                    "positions",
-                    upload.buffer("positions", bytemuck::cast_slice(positions), storage)?,
-                ),
-                (
-                    "attributes",
-                    upload.buffer("attributes", bytemuck::cast_slice(attributes), storage)?,
-                ),
-            ];
-            resources.buffers.extend(shape);
-        }
-        let own = [
-            ("instances", instances.clone()),
-            ("camera", camera.clone()),
-            (
-                "sceneInfo",
-                upload.buffer("sceneInfo", bytemuck::bytes_of(&info), uniform)?,
-            ),
-            (
-                "lights",
-                upload.buffer("lights", bytemuck::cast_slice(&light_blocks), storage)?,
-            ),
-            (
-                "shadowViews",
-                upload.buffer("shadowViews", bytemuck::cast_slice(&shadow_blocks), storage)?,
-            ),
-            (
-                "emitters",
-                upload.buffer("emitters", &self.emitters.buffer(&sent, None), storage)?,
-            ),
-        ];
-        resources.buffers.extend(own);
-        if self.has_rays() {
-            // The other program moves its own instances, and the hierarchy with them.
-            let found = scene_hierarchy(scene, &self.emitters, &sent);
-            resources
-                .buffers
-                .extend(ray_buffers(&mut upload, found, &info)?);
-        }
+        let shape = Shape::at_rest(&self.scene);
+        let (scene, emitters) = (self.scene.clone(), self.emitters.clone());
+        let rays = self.has_rays();
+        let own = Own::new(&mut upload, (&scene, self.origin), &shape, &emitters, rays)?;
         upload.finish()?;
-        let (emitters, scene) = (self.emitters.clone(), self.scene.clone());
-        let posed_at = 0.0;
+        let mut resources = self.resources.clone();
+        resources.buffers.extend(own.buffers.clone());
         Ok(SceneGpu {
             resources,
-            camera,
             bytes: self.bytes,
-            origin,
-            info,
-            lighting,
-            bounds,
-            instances,
-            sent,
-            posed_at,
+            origin: self.origin,
+            own,
             scene,
             emitters,
         })
@@ -364,61 +202,48 @@ impl SceneGpu {
     /// A pose with a hierarchy that is too deep.
     pub fn updates(&mut self, time: f64, first: bool) -> Result<Vec<Update>> {
         let scene = self.scene.clone();
-        let previous = (!first).then_some(self.sent.as_slice());
-        let deforms = !scene.deformers.is_empty() && time as f32 != self.posed_at;
+        let own = &mut self.own;
+        let previous = (!first).then_some(own.sent.as_slice());
+        let deforms = !scene.deformers.is_empty() && time as f32 != own.posed_at;
         let now = instances(&scene, self.origin, time as f32, previous, deforms);
-        if !deforms && now == self.sent || now.is_empty() {
+        if !deforms && now == own.sent || now.is_empty() {
             return Ok(Vec::new());
         }
-        self.sent = now;
-        let mut list = vec![Update::all(
-            &self.instances,
-            bytemuck::cast_slice(&self.sent).to_vec(),
-        )];
+        own.sent = now;
         if deforms {
-            self.posed_at = time as f32;
+            own.posed_at = time as f32;
         }
-        let posed = scene.posed_meshes(self.posed_at);
+        let posed = scene.posed_meshes(self.own.posed_at);
+        let mut list = Vec::new();
+        list.extend(self.update("instances", bytemuck::cast_slice(&self.own.sent).to_vec()));
         if deforms {
             list.extend(self.deformed(&scene, &posed));
         }
-        let rays = [
-            self.resources.buffers.get("bvhNodes"),
-            self.resources.buffers.get("bvhTriangles"),
-        ];
-        let emitters = self
-            .resources
-            .buffers
-            .get("emitters")
-            .filter(|_| self.emitters.move_in(&scene));
+        let (sent, moves) = (&self.own.sent, self.emitters.move_in(&scene));
         // Emitters of rigid bodies need no vertices: these are all of the scene's.
-        if rays[0].is_none() && (emitters.is_none() || scene.deformers.is_empty()) {
-            list.extend(
-                emitters.map(|buffer| Update::all(buffer, self.emitters.buffer(&self.sent, None))),
-            );
+        let rigid = !moves || scene.deformers.is_empty();
+        if rigid && !self.has_rays() {
+            let emitters = moves.then(|| self.emitters.buffer(sent, None));
+            list.extend(emitters.and_then(|bytes| self.update("emitters", bytes)));
             return Ok(list);
         }
-        let (positions, _, indices, first_index) = vertices(&scene, &posed);
-        if let Some(buffer) = emitters {
-            let moved =
-                (!scene.deformers.is_empty()).then_some((positions.as_slice(), indices.as_slice()));
-            list.push(Update::all(buffer, self.emitters.buffer(&self.sent, moved)));
+        let shape = Shape::new(&scene, &posed);
+        if moves {
+            let vertices = (shape.positions.as_slice(), shape.indices.as_slice());
+            let moved = (!scene.deformers.is_empty()).then_some(vertices);
+            list.extend(self.update("emitters", self.emitters.buffer(sent, moved)));
         }
-        if let [Some(nodes), Some(triangles)] = rays {
-            let draws = draws(&scene, &first_index);
-            let masked = |d: &DrawBlock| is_masked(&scene, d);
-            let soup = Soup {
-                positions: &positions,
-                indices: &indices,
-                draws: &draws,
-                first_index: &first_index,
-                masked: &masked,
-            };
-            let found = hierarchy(&soup, &self.emitters, &self.sent);
-            list.push(Update::all(nodes, found.nodes));
-            list.push(Update::all(triangles, found.triangles));
+        if self.has_rays() {
+            let found = hierarchy(&shape, &self.emitters, sent);
+            list.extend(self.update("bvhNodes", found.nodes));
+            list.extend(self.update("bvhTriangles", found.triangles));
         }
         Ok(list)
+    }
+
+    /// New bytes of a whole buffer.
+    fn update(&self, name: &str, bytes: Vec<u8>) -> Option<Update> {
+        Some(Update::all(self.resources.buffers.get(name)?, bytes))
     }
 
     /// Positions and attributes of the meshes that deform.
@@ -469,198 +294,125 @@ impl SceneGpu {
     /// with the sky. The scene has as many lights and shadow maps as the one that was uploaded, and
     /// its geometry.
     pub fn set_lights(&mut self, list: &[Light], sky: Vec3) -> Vec<Update> {
-        self.lighting.lights = list.to_vec();
-        self.lighting.sky = sky;
+        self.own.lighting.lights = list.to_vec();
+        self.own.lighting.sky = sky;
         self.relit()
     }
 
     /// Buffers that change with the rotation of the sky's picture, degrees about y.
     pub fn turn_sky(&mut self, rotation: f32) -> Vec<Update> {
-        if let Some(environment) = &mut self.lighting.environment {
+        if let Some(environment) = &mut self.own.lighting.environment {
             environment.rotation = rotation;
         }
         self.relit()
     }
 
     fn relit(&mut self) -> Vec<Update> {
-        let (light_blocks, shadow_blocks) = self.lighting.blocks(self.bounds, self.origin);
-        self.info = self.lighting.inform(self.info);
-        let contents: [(&str, &[u8]); 3] = [
-            ("lights", bytemuck::cast_slice(&light_blocks)),
-            ("shadowViews", bytemuck::cast_slice(&shadow_blocks)),
-            ("sceneInfo", bytemuck::bytes_of(&self.info)),
+        let lighting = &self.own.lighting;
+        let (lights, shadows) = lighting.blocks(self.scene.bounds(), self.origin);
+        self.own.info = lighting.inform(self.own.info);
+        let contents = [
+            ("lights", bytemuck::cast_slice(&lights).to_vec()),
+            ("shadowViews", bytemuck::cast_slice(&shadows).to_vec()),
         ];
-        let buffer = |name: &str| self.resources.buffers.get(name).cloned();
-        contents
-            .iter()
-            .filter_map(|(name, bytes)| Some(Update::all(&buffer(name)?, bytes.to_vec())))
-            .collect()
+        let changed = contents
+            .into_iter()
+            .filter_map(|(name, bytes)| self.update(name, bytes));
+        changed.chain(self.info()).collect()
     }
 
     /// The block `sceneInfo` as it is.
     pub fn info(&self) -> Option<Update> {
-        let buffer = self.resources.buffers.get("sceneInfo")?;
-        Some(Update::all(buffer, bytemuck::bytes_of(&self.info).to_vec()))
+        self.update("sceneInfo", bytemuck::bytes_of(&self.own.info).to_vec())
+    }
+
+    /// The block `camera` of the next frame.
+    pub fn camera(&self, block: Vec<u8>) -> Option<Update> {
+        self.update("camera", block)
+    }
+
+    /// Whether another one has the same buffers for content that changes.
+    pub fn shares_buffers(&self, other: &SceneGpu) -> bool {
+        let [a, b] = [self, other].map(|scene| scene.own.buffers.get("camera"));
+        a.zip(b).is_some_and(|(a, b)| Arc::ptr_eq(a, b))
     }
 }
 
 /// The hierarchy over triangles in the pose of these instances.
-fn hierarchy(soup: &Soup<'_>, emitters: &Emitters, instances: &[InstanceBlock]) -> bvh::Hierarchy {
+fn hierarchy(shape: &Shape, emitters: &Emitters, instances: &[InstanceBlock]) -> bvh::Hierarchy {
     let model = |i: u32| {
         instances
             .get(i as usize)
             .map_or(Mat4::IDENTITY, |b| Mat4::from_cols_array(&b.model))
     };
-    bvh::build(soup, emitters, &model)
+    bvh::build(shape, emitters, &model)
 }
 
-/// [`hierarchy`] over all triangles of a scene that was uploaded before, at 0 s.
-fn scene_hierarchy(
-    scene: &Scene,
-    emitters: &Emitters,
-    instances: &[InstanceBlock],
-) -> bvh::Hierarchy {
-    let (positions, _, indices, first_index) = vertices(scene, &scene.posed_meshes(0.0));
-    let draws = draws(scene, &first_index);
-    let masked = |d: &DrawBlock| is_masked(scene, d);
-    let soup = Soup {
-        positions: &positions,
-        indices: &indices,
-        draws: &draws,
-        first_index: &first_index,
-        masked: &masked,
-    };
-    hierarchy(&soup, emitters, instances)
-}
-
-/// The buffers of a hierarchy, with room for that of any other pose.
-fn ray_buffers(
+/// Buffers that all programs share.
+fn shared_buffers(
     upload: &mut Upload,
-    found: bvh::Hierarchy,
-    info: &SceneInfoBlock,
-) -> Result<[(&'static str, Arc<Buffer>); 2]> {
-    let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
-    let bvh::Hierarchy {
-        mut nodes,
-        mut triangles,
-    } = found;
-    let (most_nodes, most_triangles) = bvh::capacity(info.triangle_count as usize);
-    nodes.resize(nodes.len().max(most_nodes), 0);
-    triangles.resize(triangles.len().max(most_triangles), 0);
-    Ok([
-        ("bvhNodes", upload.buffer("bvhNodes", &nodes, storage)?),
-        (
-            "bvhTriangles",
-            upload.buffer("bvhTriangles", &triangles, storage)?,
-        ),
-    ])
-}
-
-fn is_masked(scene: &Scene, draw: &DrawBlock) -> bool {
-    scene
-        .materials
-        .get(draw.material as usize)
-        .is_some_and(|m| m.alpha_cutoff > 0.0)
-}
-
-/// Positions (3 floats), attributes (3 vec4), indices of all meshes one after another with these
-/// vertices, and each mesh's first index.
-fn vertices(
     scene: &Scene,
-    posed: &[Cow<'_, [Vertex]>],
-) -> (Vec<f32>, Vec<Attributes>, Vec<u32>, Vec<u32>) {
-    let (mut positions, mut attributes, mut indices, mut first) =
-        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (mesh, vertices) in scene.meshes.iter().zip(posed) {
-        let base = u32::try_from(positions.len() / 3).unwrap_or(u32::MAX);
-        first.push(u32::try_from(indices.len()).unwrap_or(u32::MAX));
-        positions.extend(vertices.iter().flat_map(|v| v.position));
-        attributes.extend(vertices.iter().map(attributes::of));
-        indices.extend(mesh.indices.iter().map(|i| base + i));
-    }
-    (positions, attributes, indices, first)
-}
-
-/// One draw for each part of each instance, opaque ones first.
-fn draws(scene: &Scene, first_index: &[u32]) -> Vec<DrawBlock> {
-    let mut list = Vec::new();
-    for (i, instance) in (0u32..).zip(&scene.instances) {
-        let Some(mesh) = scene.meshes.get(instance.mesh as usize) else {
-            continue;
-        };
-        for submesh in mesh.submeshes.iter().filter(|p| p.index_count > 0) {
-            list.push(DrawBlock {
-                instance: i,
-                material: submesh.material,
-                first_index: first_index[instance.mesh as usize] + submesh.first_index,
-                index_count: submesh.index_count,
-            });
-        }
-    }
-    list.sort_by_key(|d| is_masked(scene, d));
-    list
-}
-
-/// (draw, first of its indices) of every triangle, draw by draw. Neighbours in space are neighbours
-/// in the list. The order depends on the content of triangles alone, because it decides which of
-/// two coincident ones is visible.
-fn triangles(
-    draws: &[DrawBlock],
-    indices: &[u32],
-    positions: &[f32],
-    attributes: &[Attributes],
-) -> Vec<[u32; 2]> {
-    let position = |i: u32| -> [f32; 3] {
-        std::array::from_fn(|k| positions[3 * indices[i as usize] as usize + k])
+    shape: &Shape,
+    textures: &MaterialTextures,
+    colored: &HashSet<u32>,
+) -> Result<Buffers> {
+    let dielectrics = Dielectrics::of(&scene.materials);
+    let handle = |t: Option<u32>, lookup: Lookup| textures.handle(t, lookup);
+    let block = |(i, m)| material(m, dielectrics.number(m), colored.contains(&i), &handle);
+    let materials: Vec<MaterialBlock> = (0u32..).zip(&scene.materials).map(block).collect();
+    let mut buffers = Buffers::new();
+    let mut add = |name, bytes: &[u8], usage| -> Result<()> {
+        buffers.insert(name, upload.buffer(name, bytes, usage)?);
+        Ok(())
     };
-    let content = |first: u32| -> [[u32; 15]; 3] {
-        std::array::from_fn(|k| {
-            let vertex = indices[first as usize + k] as usize;
-            let numbers = positions[3 * vertex..3 * vertex + 3]
-                .iter()
-                .chain(&attributes[vertex]);
-            let mut words = [0; 15];
-            words
-                .iter_mut()
-                .zip(numbers)
-                .for_each(|(w, n)| *w = n.to_bits());
-            words
-        })
-    };
-    // Instances of one mesh have the same triangles.
-    let mut sorted: HashMap<(u32, u32), Vec<u32>> = HashMap::new();
-    let mut list = Vec::new();
-    for (number, draw) in (0u32..).zip(draws) {
-        let order = sorted
-            .entry((draw.first_index, draw.index_count))
-            .or_insert_with(|| {
-                let firsts = (draw.first_index..draw.first_index + draw.index_count).step_by(3);
-                let middle = |first: u32| {
-                    let [a, b, c] = [0, 1, 2].map(|k| Vec3::from(position(first + k)));
-                    (a + b + c) / 3.0
-                };
-                let (low, high) = firsts.clone().map(middle).fold(
-                    (Vec3::splat(f32::MAX), Vec3::splat(f32::MIN)),
-                    |(low, high), p| (low.min(p), high.max(p)),
-                );
-                let scale = 1023.0 / (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
-                let mut keyed: Vec<(u32, u32)> = firsts
-                    .map(|f| (morton((middle(f) - low) * scale), f))
-                    .collect();
-                keyed.sort_by(|a, b| a.0.cmp(&b.0).then_with(|| content(a.1).cmp(&content(b.1))));
-                keyed.into_iter().map(|(_, first)| first).collect()
-            });
-        list.extend(order.iter().map(|first| [number, *first]));
+    let index = vk::BufferUsageFlags::INDEX_BUFFER | STORAGE;
+    add("indices", bytemuck::cast_slice(&shape.indices), index)?;
+    add("materials", bytemuck::cast_slice(&materials), STORAGE)?;
+    add(
+        "dielectrics",
+        bytemuck::cast_slice(&dielectrics.list),
+        STORAGE,
+    )?;
+    add("draws", bytemuck::cast_slice(&shape.draws), STORAGE)?;
+    add(
+        "triangles",
+        bytemuck::cast_slice(&shape.triangles()),
+        STORAGE,
+    )?;
+    // Vertices that move belong to each program.
+    if scene.deformers.is_empty() {
+        add("positions", bytemuck::cast_slice(&shape.positions), STORAGE)?;
+        add(
+            "attributes",
+            bytemuck::cast_slice(&shape.attributes),
+            STORAGE,
+        )?;
     }
-    list
+    Ok(buffers)
 }
 
-/// Interleaves the bits of three numbers below 1024: neighbours in space have neighbouring codes
-/// (Morton 1966).
-fn morton(p: Vec3) -> u32 {
-    let spread = |v: f32| (0..10).fold(0, |word, bit| word | (v as u32 >> bit & 1) << (3 * bit));
-    spread(p.x) | spread(p.y) << 1 | spread(p.z) << 2
+fn check_sizes(gpu: &Gpu, buffers: &Buffers) -> Result<()> {
+    let limit = u64::from(gpu.info.limits.max_storage_buffer_range);
+    match buffers.iter().find(|(_, b)| b.size > limit) {
+        Some((name, buffer)) => Err(VulkanError::Limit {
+            what: format!("the scene's buffer '{name}'"),
+            asked: format!("{} bytes", buffer.size),
+            limit: format!("{limit} bytes (fewer triangles, or less splitting, would fit)"),
+            device: gpu.info.name.clone(),
+        }),
+        None => Ok(()),
+    }
 }
+
+/// How materials are sampled. Wrap modes are bits of a texture's handle.
+const SAMPLER: SamplerDesc = SamplerDesc {
+    filter: vk::Filter::LINEAR,
+    mip_filter: vk::SamplerMipmapMode::LINEAR,
+    address: vk::SamplerAddressMode::REPEAT,
+    border: vk::BorderColor::FLOAT_TRANSPARENT_BLACK,
+    compare: None,
+    anisotropic: true,
+};
 
 fn material(
     m: &Material,

@@ -66,7 +66,7 @@ impl Session {
     /// The device was lost.
     pub fn swap_in(&mut self, old: &mut Session) -> Result<(), LabError> {
         self.program.swap_in(&mut old.program)?;
-        if Arc::ptr_eq(&self.scene_gpu.camera, &old.scene_gpu.camera) {
+        if self.scene_gpu.shares_buffers(&old.scene_gpu) {
             // Poses and lights were sent since this one was made.
             self.scene_gpu = old.scene_gpu.clone();
             self.light_updates.append(&mut old.light_updates);
@@ -152,7 +152,7 @@ impl Session {
         let camera =
             self.viewpoint
                 .uniform(self.scene_gpu.origin, self.size, self.time, frames, delta);
-        updates.push(Update::all(&self.scene_gpu.camera, camera));
+        updates.extend(self.scene_gpu.camera(camera));
         if !self.sent_params {
             updates.push(Update::all(
                 &self.program.params_buffer(),
