@@ -1,7 +1,7 @@
 //! Charts as SVG.
 
-use super::table::short;
 use crate::lab::LabError;
+use crate::results::table::short;
 use indexmap::IndexSet;
 use plotters::chart::ChartContext;
 use plotters::coord::Shift;

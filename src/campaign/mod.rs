@@ -14,4 +14,3 @@ pub mod settings;
 pub mod source;
 pub mod stability;
 pub mod sweep;
-pub mod table;

@@ -4,6 +4,7 @@ use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
 use crate::lab::{Lab, LabError, Workspace};
 use crate::measure::reference::{ALL_BOUNCES, Gathered, Goal, Reference, gather};
+use crate::results::table::Table;
 use clap::Args;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -58,22 +59,17 @@ pub fn run(args: &ReferenceArgs) -> Result<(), LabError> {
         reference.size.0,
         reference.size.1
     );
-    say!(
-        "{:<12}{:>14}{:>22}{:>20}",
-        "part",
-        "mean",
-        "relMSE of the halves",
-        "structure of noise"
-    );
-    for (name, part) in &reference.parts {
-        let noise = part.noise;
-        say!(
-            "{name:<12}{:>14.6}{:>22.3e}{:>20.3e}",
-            part.mean.mean(),
-            noise.relmse,
-            noise.structure
-        );
-    }
+    let parts: Vec<_> = reference.parts.iter().collect();
+    let mut table = Table::new(&parts);
+    table.column("part", |p| p.0.clone());
+    table.column("mean", |p| format!("{:.6}", p.1.mean.mean()));
+    table.column("relMSE of the halves", |p| {
+        format!("{:.3e}", p.1.noise.relmse)
+    });
+    table.column("structure of noise", |p| {
+        format!("{:.3e}", p.1.noise.structure)
+    });
+    say_part!("{}", table.text());
     say!("kept in {}", super::shown(&reference.folder).display());
     if let Some(path) = &args.output {
         let part = reference.parts.get(&args.part).ok_or_else(|| {

@@ -4,8 +4,9 @@ use super::DeviceArgs;
 use super::adapt::parse_size;
 use crate::graph::run::Execution;
 use crate::lab::{LabError, Workspace};
+use crate::results::stats::{Spread, spreads};
 use crate::workbench::Options;
-use crate::workbench::hosts::screenshot::{Edit, Pace, Script, take};
+use crate::workbench::hosts::screenshot::{Edit, Pace, Script, Shot, take};
 use clap::Args;
 use std::io::Cursor;
 use std::path::PathBuf;
@@ -136,35 +137,40 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
     .map_err(LabError::making("the picture"))?;
     crate::files::write_whole(&args.output, file.get_ref())?;
     if args.measure > 0 || shot.pace.is_some() || shot.edit_ms.is_some() {
-        let row = |name: &str, s: &crate::results::stats::Spread| {
-            say!("{name:<28}{:>10.3}{:>10.3}{:>10.3}", s.min, s.median, s.p95);
-        };
-        say!("{:<28}{:>10}{:>10}{:>10}", "ms", "min", "median", "p95");
-        if args.measure > 0 {
-            row("interface, CPU", &shot.cpu_ms);
-            row("interface, GPU", &shot.gpu_ms);
-            row("copying pictures, GPU", &shot.copy_ms);
-        }
-        if let Some(pace) = &shot.pace {
-            row("from picture to picture", &pace.engine_ms);
-            row("from paint to paint", &pace.paint_ms);
-            row("from picture to its paint", &pace.delay_ms);
-            row("interface, CPU", &pace.cpu_ms);
-            say!("{} pictures, {} painted", pace.pictures, pace.painted);
-            if let Some((before, after)) = pace.memory {
-                say!(
-                    "{:.1} MiB after a tenth of them, {:.1} MiB after all",
-                    mib(before),
-                    mib(after)
-                );
-            }
-        }
-        if let Some(edit) = &shot.edit_ms {
-            row("save to pixels", edit);
-        }
+        print_times(&shot, args.measure > 0);
     }
     say!("wrote {}", super::shown(&args.output).display());
     Ok(())
+}
+
+fn print_times(shot: &Shot, measured: bool) {
+    let mut rows = Vec::new();
+    let mut add = |name: &str, spread: &Spread| rows.push((name.to_string(), *spread));
+    if measured {
+        add("interface, CPU", &shot.cpu_ms);
+        add("interface, GPU", &shot.gpu_ms);
+        add("copying pictures, GPU", &shot.copy_ms);
+    }
+    if let Some(pace) = &shot.pace {
+        add("from picture to picture", &pace.engine_ms);
+        add("from paint to paint", &pace.paint_ms);
+        add("from picture to its paint", &pace.delay_ms);
+        add("interface, CPU", &pace.cpu_ms);
+    }
+    if let Some(edit) = &shot.edit_ms {
+        add("save to pixels", edit);
+    }
+    say_part!("{}", spreads("ms", &rows));
+    if let Some(pace) = &shot.pace {
+        say!("{} pictures, {} painted", pace.pictures, pace.painted);
+        if let Some((before, after)) = pace.memory {
+            say!(
+                "{:.1} MiB after a tenth of them, {:.1} MiB after all",
+                mib(before),
+                mib(after)
+            );
+        }
+    }
 }
 
 fn mib(bytes: u64) -> f64 {

@@ -7,9 +7,9 @@ use crate::campaign::record::write_file;
 use crate::campaign::stability::{
     Options, Suite, failure_table, failures, run as run_suite, sheet,
 };
-use crate::campaign::table::short;
 use crate::lab::{Lab, LabError, Workspace};
 use crate::metrics::RELMSE;
+use crate::results::table::short;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -109,7 +109,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
         let list = failures(&report);
         let bytes = sheet(&list, &options.folder)?;
         write_file(path, &bytes)?;
-        say!("\n{}\nwrote {}", failure_table(&list), path.display());
+        say!("\n{}wrote {}", failure_table(&list), path.display());
     }
     say!("{} done, {} failed", counts.done, counts.failed);
     match counts.failed {

@@ -3,4 +3,5 @@
 pub mod capture;
 pub mod picture;
 pub mod stats;
+pub(crate) mod table;
 pub mod timers;

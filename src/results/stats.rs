@@ -3,6 +3,7 @@
 use crate::graph::param::{OFF, Params};
 use crate::graph::run::{Execution, FrameTimes};
 use crate::lab::Session;
+use crate::results::table::Table;
 use crate::vulkan::DeviceInfo;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -193,39 +194,33 @@ fn param_values(params: &Params) -> BTreeMap<String, serde_json::Value> {
         .collect()
 }
 
-/// A table for people.
+/// The times as a table, and the memory.
 pub fn table(stats: &Stats) -> String {
-    use std::fmt::Write;
-    let mut out = format!(
-        "{} ({}), {}x{}\n",
-        stats.device.name, stats.device.driver, stats.size[0], stats.size[1]
-    );
-    let _ = writeln!(
-        out,
-        "{:<28}{:>10}{:>10}{:>10}",
-        "GPU ms", "min", "median", "p95"
-    );
-    let mut row = |name: &str, s: &Spread| {
-        let _ = writeln!(
-            out,
-            "{name:<28}{:>10.3}{:>10.3}{:>10.3}",
-            s.min, s.median, s.p95
-        );
-    };
+    let mut rows: Vec<(String, Spread)> = Vec::new();
     for pass in &stats.passes {
         let skipped = pass.skipped == pass.frames && pass.skipped > 0;
-        row(
-            &format!("{}{}", pass.name, if skipped { " (skipped)" } else { "" }),
-            &pass.gpu_ms,
-        );
+        let title = format!("{}{}", pass.name, if skipped { " (skipped)" } else { "" });
+        rows.push((title, pass.gpu_ms));
     }
-    row("total", &stats.total_gpu_ms);
-    row("CPU record and submit", &stats.cpu_ms);
-    let _ = writeln!(
-        out,
-        "{:<28}{:>10.1} MiB",
-        "memory of the graph",
+    rows.push(("total".into(), stats.total_gpu_ms));
+    rows.push(("CPU record and submit".into(), stats.cpu_ms));
+    format!(
+        "{} ({}), {}x{}\n{}memory of the graph: {:.1} MiB\n",
+        stats.device.name,
+        stats.device.driver,
+        stats.size[0],
+        stats.size[1],
+        spreads("GPU ms", &rows),
         stats.total_bytes as f64 / 1048576.0
-    );
-    out
+    )
+}
+
+/// Named spreads, ms.
+pub(crate) fn spreads(title: &str, rows: &[(String, Spread)]) -> String {
+    let mut table = Table::new(rows);
+    table.column(title, |r| r.0.clone());
+    table.column("min", |r| format!("{:.3}", r.1.min));
+    table.column("median", |r| format!("{:.3}", r.1.median));
+    table.column("p95", |r| format!("{:.3}", r.1.p95));
+    table.text()
 }

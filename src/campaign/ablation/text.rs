@@ -1,124 +1,84 @@
 //! The rows as text: Markdown that is aligned for terminals too, and comma-separated values.
 
 use super::row::{Delta, Row};
-use crate::campaign::table::{self, Table, short};
 use crate::lab::LabError;
 use crate::metrics::{Best, Metric};
+use crate::results::table::{Table, short};
 use indexmap::IndexSet;
 
 /// The tables as Markdown: costs and verdicts, then the errors of each part.
 pub fn markdown(rows: &[Row]) -> String {
-    let mut verdicts = vec![
-        [
-            "parameter",
-            "is",
-            "plain",
-            "time",
-            "memory",
-            "larger",
-            "smaller",
-            "verdict",
-        ]
-        .map(String::from)
-        .to_vec(),
-    ];
-    for row in rows {
-        let named = |sign: i8| {
-            let errors = row.errors.iter().filter(|e| e.delta.sign() == sign);
-            errors
-                .map(|e| format!("{} {}", e.part, e.metric.short()))
-                .collect::<Vec<_>>()
-                .join(", ")
-        };
-        let failed: Vec<String> = row
-            .failed
-            .iter()
-            .map(|(scene, why)| format!("{scene}: {why}"))
-            .collect();
-        let verdict = std::iter::once(row.verdict.to_string())
-            .chain(failed)
-            .collect::<Vec<_>>()
-            .join("; ");
-        let cost = |delta: &Option<Delta>| {
-            delta
-                .as_ref()
-                .map_or("-".into(), |d| percent(d.change, d.noise))
-        };
-        let (from, to) = (row.change.from.to_string(), row.change.to.to_string());
-        let name = row.change.name.clone();
-        verdicts.push(vec![
-            name,
-            from,
-            to,
-            cost(&row.ms),
-            cost(&row.bytes),
-            named(1),
-            named(-1),
-            verdict,
-        ]);
-    }
-    let mut out = table::markdown(&verdicts);
+    let mut out = verdicts(rows);
     let parts: IndexSet<&str> = rows
         .iter()
         .flat_map(|r| &r.errors)
         .map(|e| e.part.as_str())
         .collect();
-    for part in parts {
-        let table = errors(rows, part);
-        if table.len() > 1 {
-            out += "\n";
-            out += &table::markdown(&table);
-        }
+    for table in parts.iter().filter_map(|part| errors(rows, part)) {
+        out += "\n";
+        out += &table;
     }
     out
 }
 
-/// Mean and worst change of each metric of a part; what the experiment itself has stands in the head.
-fn errors(rows: &[Row], part: &str) -> Vec<Vec<String>> {
+fn verdicts(rows: &[Row]) -> String {
+    let named = |row: &Row, sign: i8| {
+        let errors = row.errors.iter().filter(|e| e.delta.sign() == sign);
+        let names: Vec<String> = errors
+            .map(|e| format!("{} {}", e.part, e.metric.short()))
+            .collect();
+        names.join(", ")
+    };
+    let cost = |delta: &Option<Delta>| match delta {
+        Some(d) => percent(d.change, d.noise),
+        None => "-".into(),
+    };
+    let mut table = Table::new(rows);
+    table.column("parameter", |r| r.change.name.clone());
+    table.column("is", |r| r.change.from.to_string());
+    table.column("plain", |r| r.change.to.to_string());
+    table.column("time", |r| cost(&r.ms));
+    table.column("memory", |r| cost(&r.bytes));
+    table.column("larger", |r| named(r, 1));
+    table.column("smaller", |r| named(r, -1));
+    table.column("verdict", |r| {
+        let failed = r
+            .failed
+            .iter()
+            .map(|(scene, why)| format!("{scene}: {why}"));
+        let all: Vec<String> = std::iter::once(r.verdict.to_string())
+            .chain(failed)
+            .collect();
+        all.join("; ")
+    });
+    table.markdown()
+}
+
+/// Mean and worst change of each metric of a part. The titles have the values of the unchanged experiment.
+fn errors(rows: &[Row], part: &str) -> Option<String> {
     let delta = |row: &Row, metric: &Metric| {
         row.errors
             .iter()
             .find(|e| e.part == part && e.metric == metric)
             .map(|e| e.delta.clone())
     };
-    let there: Vec<&Metric> = Metric::few()
-        .filter(|m| rows.iter().any(|r| delta(r, m).is_some()))
-        .collect();
-    if there.is_empty() {
-        return Vec::new();
-    }
-    let mut head = vec![part.to_string()];
-    for metric in &there {
-        let own = rows.iter().find_map(|r| delta(r, metric));
-        let own = own.map(|d| {
-            format!(
-                "{} {}, noise {}",
-                metric.short(),
-                short(d.unchanged),
-                noise(metric, d.noise)
-            )
+    let unchanged = |m| Some((m, rows.iter().find_map(|r| delta(r, m))?));
+    let metrics: Vec<(&Metric, Delta)> = Metric::few().filter_map(unchanged).collect();
+    let mut table = Table::new(rows);
+    table.column(part, |r| r.change.name.clone());
+    for (metric, own) in &metrics {
+        let (value, noise) = (short(own.unchanged), noise(metric, own.noise));
+        table.column(format!("{} {value}, noise {noise}", metric.short()), |r| {
+            delta(r, metric).map_or("-".into(), |d| growth(metric, d.change, d.noise))
         });
-        head.push(own.unwrap_or("-".into()));
-        head.push("worst".into());
+        table.column("worst", |r| {
+            delta(r, metric).map_or("-".into(), |d| {
+                let change = growth(metric, d.worst, d.worst_noise);
+                format!("{change} {}", d.worst_scene)
+            })
+        });
     }
-    let mut table = vec![head];
-    for row in rows {
-        let mut line = vec![row.change.name.clone()];
-        for metric in &there {
-            let Some(delta) = delta(row, metric) else {
-                line.extend(["-".into(), "-".into()]);
-                continue;
-            };
-            line.push(growth(metric, delta.change, delta.noise));
-            line.push(format!(
-                "{} {}",
-                growth(metric, delta.worst, delta.worst_noise),
-                delta.worst_scene
-            ));
-        }
-        table.push(line);
-    }
-    table
+    (!metrics.is_empty()).then(|| table.markdown())
 }
 
 /// What is not told from noise stands in brackets.

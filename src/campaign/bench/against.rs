@@ -7,6 +7,7 @@
 use super::record::{Record, Recorded, plain};
 use super::{Bench, Times};
 use crate::results::stats::{DeviceStats, spread};
+use crate::results::table::Table;
 use std::fmt::Write;
 
 /// What a stage must lose or win to count, ms.
@@ -150,28 +151,17 @@ pub fn against_text(record: &Record, bench: &Bench, compared: &[Compared]) -> St
             record.device.driver
         );
     }
-    let names = compared
-        .iter()
-        .flat_map(|c| &c.rows)
-        .map(|r| r.stage.chars().count());
-    let width = names.max().unwrap_or(0) + 2;
     for Compared { title, rows, notes } in compared {
-        let _ = writeln!(
-            out,
-            "\n{title}\n{:width$}{:>10}{:>10}{:>8}",
-            "", "recorded", "now", "ratio"
-        );
-        for row in rows {
-            let ms = |value: Option<f64>| value.map_or("-".into(), |ms| format!("{ms:.3}"));
-            let ratio = row.ratio().map_or("-".into(), |r| format!("{r:.2}"));
-            let line = format!(
-                "{:width$}{:>10}{:>10}{ratio:>8}",
-                row.stage,
-                ms(row.recorded),
-                ms(row.now)
-            );
-            let _ = writeln!(out, "{line}{}", word(row.verdict));
-        }
+        let ms = |value: Option<f64>| value.map_or("-".into(), |ms| format!("{ms:.3}"));
+        let mut table = Table::new(rows);
+        table.column("stage", |r| r.stage.clone());
+        table.column("recorded", |r| ms(r.recorded));
+        table.column("now", |r| ms(r.now));
+        table.column("ratio", |r| {
+            r.ratio().map_or("-".into(), |r| format!("{r:.2}"))
+        });
+        table.column("", |r| word(r.verdict).into());
+        let _ = write!(out, "\n{title}\n{}", table.text());
         for note in notes {
             let _ = writeln!(out, "note: {note}");
         }
@@ -182,11 +172,11 @@ pub fn against_text(record: &Record, bench: &Bench, compared: &[Compared]) -> St
 fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Same => "",
-        Verdict::Slower => "  slower",
-        Verdict::Faster => "  faster",
-        Verdict::Noisy => "  slower, but the recorded rounds scatter as far",
-        Verdict::New => "  new",
-        Verdict::Gone => "  gone",
+        Verdict::Slower => "slower",
+        Verdict::Faster => "faster",
+        Verdict::Noisy => "slower, but the recorded rounds scatter as far",
+        Verdict::New => "new",
+        Verdict::Gone => "gone",
     }
 }
 

@@ -3,9 +3,9 @@
 use super::{Bench, Configuration};
 use crate::campaign::points::labelled;
 use crate::campaign::record::first_line;
-use crate::campaign::table::{Table, cell};
 use crate::lab::LabError;
 use crate::results::stats::Spread;
+use crate::results::table::{Table, cell};
 use indexmap::{IndexMap, IndexSet};
 use std::fmt::Write;
 
@@ -22,6 +22,15 @@ impl Row<'_> {
     /// Of its pictures.
     pub fn pixels(&self) -> u64 {
         u64::from(self.size.0) * u64::from(self.size.1)
+    }
+
+    fn full_title(&self) -> String {
+        format!("{}x{} {}", self.size.0, self.size.1, self.title)
+    }
+
+    fn ratios(&self, first: &Row) -> Vec<Option<String>> {
+        let cells = first.cells.iter().zip(&self.cells);
+        cells.map(|(a, b)| ratio((*a)?, (*b)?)).collect()
     }
 
     fn totals(&self) -> Vec<Option<String>> {
@@ -86,6 +95,9 @@ pub(super) fn rows(bench: &Bench) -> Vec<Row<'_>> {
         .collect()
 }
 
+/// Title and cells of a printed line.
+type Line = (String, Vec<Option<String>>);
+
 /// The tables for people: the stages of each configuration at the last size, the totals by size, and the totals of every
 /// row beside those of the first at the same size, compared round by round.
 pub fn text(bench: &Bench) -> String {
@@ -99,73 +111,40 @@ pub fn text(bench: &Bench) -> String {
         bench.frames.count,
         bench.frames.warmup
     );
-    let titles = rows
-        .iter()
-        .map(|r| r.title.chars().count() + "1920x1080 ".len());
-    let width = titles
-        .chain(rows.iter().flat_map(stages).map(|s| s.chars().count()))
-        .max()
-        .unwrap_or(0)
-        + 2;
-    let header = |out: &mut String, title: &str| {
-        let _ = writeln!(out, "\n{title}");
-        let _ = write!(out, "{column:<width$}");
-        out.extend(values.iter().map(|v| format!("{v:>22}")));
-        out.push('\n');
-    };
-    let line = |out: &mut String, title: &str, cells: &[Option<String>]| {
-        let _ = write!(out, "{title:<width$}");
-        out.extend(
-            cells
-                .iter()
-                .map(|c| format!("{:>22}", c.as_deref().unwrap_or("-"))),
-        );
-        out.push('\n');
-    };
     let last = rows.iter().map(Row::pixels).max().unwrap_or(0);
-    for row in rows.iter().filter(|r| r.pixels() == last) {
-        header(
-            &mut out,
-            &format!("{} at {}x{}", row.title, row.size.0, row.size.1),
-        );
-        for stage in stages(row) {
-            let cells: Vec<_> = row
-                .cells
-                .iter()
-                .map(|c| Some(shown(stage_of((*c)?, &stage)?)))
-                .collect();
-            line(&mut out, &stage, &cells);
+    let mut add = |title: String, lines: &[Line]| {
+        let mut table = Table::new(lines);
+        table.column(&column, |l| l.0.clone());
+        for (i, value) in values.iter().enumerate() {
+            table.column(value, |l| l.1[i].clone().unwrap_or("-".into()));
         }
-        line(&mut out, "total", &row.totals());
+        let _ = write!(out, "\n{title}\n{}", table.text());
+    };
+    for row in rows.iter().filter(|r| r.pixels() == last) {
+        let stage = |stage: String| {
+            let cell = |c: &Option<&Configuration>| Some(shown(stage_of((*c)?, &stage)?));
+            let cells = row.cells.iter().map(cell).collect();
+            (stage, cells)
+        };
+        let mut lines: Vec<Line> = stages(row).into_iter().map(stage).collect();
+        lines.push(("total".into(), row.totals()));
+        add(
+            format!("{} at {}x{}", row.title, row.size.0, row.size.1),
+            &lines,
+        );
     }
-    header(&mut out, "total");
-    for row in &rows {
-        let title = format!("{}x{} {}", row.size.0, row.size.1, row.title);
-        line(&mut out, &title, &row.totals());
-    }
-    let compared: Vec<(&Row, &Row)> = rows
+    let totals: Vec<Line> = rows.iter().map(|r| (r.full_title(), r.totals())).collect();
+    add("total".into(), &totals);
+    let compared: Vec<Line> = rows
         .iter()
         .filter_map(|row| Some((rows.iter().find(|r| r.size == row.size)?, row)))
         .filter(|(first, row)| first.title != row.title)
+        .map(|(first, row)| (row.full_title(), row.ratios(first)))
         .collect();
     if !compared.is_empty() {
-        header(
-            &mut out,
-            "total, times that of the first at its size: median of the rounds (least to most)",
-        );
-        for (first, row) in compared {
-            let cells: Vec<_> = first
-                .cells
-                .iter()
-                .zip(&row.cells)
-                .map(|(a, b)| ratio((*a)?, (*b)?))
-                .collect();
-            line(
-                &mut out,
-                &format!("{}x{} {}", row.size.0, row.size.1, row.title),
-                &cells,
-            );
-        }
+        let title = "total divided by the total of the first row of that size: median of the rounds \
+                     (minimum to maximum)";
+        add(title.into(), &compared);
     }
     for failed in bench.configurations.iter().filter(|c| c.error.is_some()) {
         let error = failed.error.as_deref().map_or("", first_line);

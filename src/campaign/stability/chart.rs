@@ -2,9 +2,9 @@
 
 use super::record::{CaseRecord, FrameScore, PartResult, Report};
 use crate::campaign::charts::{Axis, Bar, Line, bars, file_name, lines};
-use crate::campaign::table::short;
 use crate::lab::LabError;
 use crate::metrics::RELMSE;
+use crate::results::table::short;
 
 /// A chart.
 pub(super) struct Chart {

@@ -5,7 +5,7 @@ use super::plot::Plot;
 use super::record::{CaseRecord, Report, picture};
 use super::table::{columns, parts};
 use crate::campaign::page::{figure, page as whole_page};
-use crate::campaign::table::{Table, cell, short, shortly};
+use crate::results::table::{Table, cell, short, shortly};
 use maud::{Markup, html};
 use std::collections::BTreeSet;
 

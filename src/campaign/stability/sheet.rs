@@ -2,10 +2,10 @@
 //! numbers beside them.
 
 use super::record::{CaseRecord, Report, Worst, picture};
-use crate::campaign::table::short;
 use crate::files::FileError;
 use crate::lab::LabError;
 use crate::metrics::{RELMSE, within_noise};
+use crate::results::table::{Table, short};
 use egui::epaint::text::{FontDefinitions, Fonts, TextOptions};
 use egui::{Color32, FontId};
 use image::codecs::jpeg::JpegEncoder;
@@ -118,23 +118,18 @@ impl Failure {
 
 /// A table for documents, Markdown.
 pub fn table(list: &[Failure]) -> String {
-    let mut out = String::from("| Method | Worst case | Figure | Noise |\n|---|---|---|---|\n");
-    for f in list {
-        let noise = f.noise.map_or("-".into(), short);
-        let mark = if f.above_noise() {
-            ""
-        } else {
-            ", not told apart"
+    let mut table = Table::new(list);
+    table.column("Method", |f| f.method.clone());
+    table.column("Worst case", |f| f.case.clone());
+    table.column("Figure", |f| {
+        let mark = match f.above_noise() {
+            true => "",
+            false => ", not told apart",
         };
-        out += &format!(
-            "| {} | {} | {} {}{mark} | {noise} |\n",
-            f.method,
-            f.case,
-            f.metric,
-            short(f.value)
-        );
-    }
-    out
+        format!("{} {}{mark}", f.metric, short(f.value))
+    });
+    table.column("Noise", |f| f.noise.map_or("-".into(), short));
+    table.markdown()
 }
 
 /// The sheet as JPEG; pictures are those in the suite's folder.

@@ -3,9 +3,9 @@
 
 use super::record::{CaseRecord, FrameScore, Measured, PartResult, Report};
 use crate::campaign::points::total_first;
-use crate::campaign::table::{Table, cell, mebibytes, number};
 use crate::lab::LabError;
 use crate::metrics::{Best, METRICS};
+use crate::results::table::{Table, cell, mebibytes, number};
 
 /// A number of a part.
 pub(super) type Value = Box<dyn Fn(&PartResult) -> Option<f64>>;

@@ -1,10 +1,10 @@
 //! A sweep as a table.
 
 use super::record::{Collected, ManifestPoint, PointRecord};
-use crate::campaign::table::{Table, cell};
 use crate::lab::LabError;
 use crate::measure::Point;
 use crate::results::stats::Stats;
+use crate::results::table::{Table, cell};
 use indexmap::IndexSet;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -5,6 +5,7 @@ use super::AblateArgs;
 use crate::lab::{Lab, LabError, Workspace, parts_of};
 use crate::measure::reference::{Goal, Reference};
 use crate::metrics::{Linear, relative_distance, relmse};
+use crate::results::table::Table;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -130,19 +131,15 @@ fn print(reference: &Reference, steps: &[Step]) {
         "relMSE against {} samples a pixel; in brackets what the step adds to the one before",
         reference.samples
     );
-    let mut line = format!("{:<12}", "part");
+    let parts: Vec<_> = reference.parts.iter().collect();
+    let mut table = Table::new(&parts);
+    table.column("part", |p| p.0.clone());
     for step in steps {
-        line += &format!("{:>24}", step.title);
+        table.column(&step.title, |p| match step.parts.get(p.0) {
+            Some([error, adds]) => format!("{error:.3e} ({adds:.2e})"),
+            None => "-".into(),
+        });
     }
-    say!("{line}{:>14}", "noise floor");
-    for (part, expected) in &reference.parts {
-        let mut line = format!("{part:<12}");
-        for step in steps {
-            line += &match step.parts.get(part) {
-                Some([error, adds]) => format!("{error:>12.3e} ({adds:.2e})"),
-                None => format!("{:>24}", "-"),
-            };
-        }
-        say!("{line}{:>14.2e}", expected.noise.relmse);
-    }
+    table.column("noise floor", |p| format!("{:.2e}", p.1.noise.relmse));
+    say_part!("{}", table.text());
 }

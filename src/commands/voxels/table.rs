@@ -1,7 +1,8 @@
 //! The figures as text.
 
 use super::Report;
-use crate::measure::oracle::SHAPES;
+use crate::measure::oracle::{SHAPES, Score};
+use crate::results::table::Table;
 
 pub(super) fn print(report: &Report) {
     let [x, y, z] = report.size;
@@ -25,97 +26,74 @@ pub(super) fn print(report: &Report) {
             }
         );
     }
-    say!(
-        "\n{:<20}{:>9}{:>9}{:>10}{:>9}{:>8}{:>9}{:>9}{:>9}{:>9}{:>8}{:>10}{:>9}",
-        "mode",
-        "voxels",
-        "recall",
-        "precision",
-        "holes",
-        "extras",
-        "thin rec",
-        "leak 6",
-        "leak 26",
-        "colour",
-        "max",
-        "normal deg",
-        "opacity"
-    );
-    let part = |r: Option<f64>| r.map_or("-".into(), |r| format!("{r:.5}"));
+    say_part!("\n{}", scores(report));
     for mode in &report.modes {
-        match (&mode.score, &mode.skipped) {
-            (Some(s), _) => {
-                let leak = |n: u64| {
-                    if s.enclosed == 0 {
-                        "-".to_string()
-                    } else {
-                        n.to_string()
-                    }
-                };
-                say!(
-                    "{:<20}{:>9}{:>9}{:>10}{:>9}{:>8}{:>9}{:>9}{:>9}{:>9.4}{:>8.3}{:>10.2}{:>+9.3}",
-                    mode.title,
-                    s.voxels,
-                    part(s.recall),
-                    part(s.precision),
-                    s.holes,
-                    s.extras,
-                    part(s.thin_recall),
-                    leak(s.leaked_6),
-                    leak(s.leaked_26),
-                    s.color_rms,
-                    s.color_max,
-                    s.normal_mean,
-                    s.opacity_bias
-                );
-            }
-            (None, why) => say!(
-                "{:<20}skipped: {}",
-                mode.title,
-                why.as_deref().unwrap_or("no reason")
-            ),
+        if mode.score.is_none() {
+            let why = mode.skipped.as_deref().unwrap_or("no reason");
+            say!("{}: skipped: {why}", mode.title);
         }
         for warning in &mode.warnings {
-            say!("  warning: {warning}");
+            say!("{}: warning: {warning}", mode.title);
         }
     }
-    shapes(report);
+    say_part!("\n{}", shapes(report));
 }
 
-/// Recall / precision by class.
-fn shapes(report: &Report) {
-    let there = |name: &&&str| {
-        report
-            .modes
-            .iter()
-            .filter_map(|m| m.score.as_ref())
-            .any(|s| s.shapes.contains_key(**name))
-    };
-    let classes: Vec<&&str> = SHAPES.iter().filter(there).collect();
-    let mut line = format!("\n{:<20}", "recall / precision");
-    for class in &classes {
-        line += &format!("{class:>20}");
-    }
-    say!("{line}");
-    let mut cells = format!("{:<20}", "exact cells");
-    if let Some(score) = report.modes.iter().find_map(|m| m.score.as_ref()) {
-        for class in &classes {
-            cells += &format!("{:>20}", score.shapes.get(**class).map_or(0, |s| s.exact));
+fn ratio(value: Option<f64>) -> String {
+    value.map_or("-".into(), |r| format!("{r:.5}"))
+}
+
+fn scores(report: &Report) -> String {
+    type Cell = fn(&Score) -> String;
+    fn leak(score: &Score, leaked: u64) -> String {
+        match score.enclosed {
+            0 => "-".into(),
+            _ => leaked.to_string(),
         }
-        say!("{cells}");
     }
-    for mode in &report.modes {
-        let Some(score) = &mode.score else { continue };
-        let mut line = format!("{:<20}", mode.title);
-        for class in &classes {
-            line += &match score.shapes.get(**class) {
-                Some(s) => {
-                    let precision = s.precision.map_or("-".into(), |p| format!("{p:.5}"));
-                    format!("{:>20}", format!("{:.5} / {precision}", s.recall))
-                }
-                None => format!("{:>20}", "-"),
-            };
-        }
-        say!("{line}");
+    let columns: [(&str, Cell); 12] = [
+        ("voxels", |s| s.voxels.to_string()),
+        ("recall", |s| ratio(s.recall)),
+        ("precision", |s| ratio(s.precision)),
+        ("holes", |s| s.holes.to_string()),
+        ("extras", |s| s.extras.to_string()),
+        ("thin rec", |s| ratio(s.thin_recall)),
+        ("leak 6", |s| leak(s, s.leaked_6)),
+        ("leak 26", |s| leak(s, s.leaked_26)),
+        ("colour", |s| format!("{:.4}", s.color_rms)),
+        ("max", |s| format!("{:.3}", s.color_max)),
+        ("normal deg", |s| format!("{:.2}", s.normal_mean)),
+        ("opacity", |s| format!("{:+.3}", s.opacity_bias)),
+    ];
+    let mut table = Table::new(&report.modes);
+    table.column("mode", |m| m.title.clone());
+    for (title, cell) in columns {
+        table.column(title, |m| m.score.as_ref().map_or("-".into(), cell));
     }
+    table.text()
+}
+
+/// Recall and precision by class of shape; the first row has the number of exact cells.
+fn shapes(report: &Report) -> String {
+    let modes = report.modes.iter();
+    let scores: Vec<(&str, &Score)> = modes
+        .filter_map(|m| Some((m.title.as_str(), m.score.as_ref()?)))
+        .collect();
+    let exact = scores.first().map(|(_, score)| (None, *score));
+    let rows: Vec<(Option<&str>, &Score)> = exact
+        .into_iter()
+        .chain(scores.iter().map(|(title, score)| (Some(*title), *score)))
+        .collect();
+    let mut table = Table::new(&rows);
+    table.column("recall / precision", |r| {
+        r.0.unwrap_or("exact cells").into()
+    });
+    for class in SHAPES {
+        table.column(class, |(title, score)| match score.shapes.get(class) {
+            None => String::new(),
+            Some(s) if title.is_none() => s.exact.to_string(),
+            Some(s) => format!("{:.5} / {}", s.recall, ratio(s.precision)),
+        });
+    }
+    table.without_empty().text()
 }

@@ -1,13 +1,10 @@
 //! A comparison as text.
 
 use super::{Comparison, PartComparison, RegionComparison};
-use crate::metrics::{METRICS, Metric};
+use crate::metrics::{METRICS, Metric, Scores};
+use crate::results::table::Table;
 use std::fmt::Write as _;
 
-/// Width of a column.
-const WIDTH: usize = 11;
-/// Width of the columns before them: region and picture.
-const TITLE: usize = 30;
 const LETTERS: [&str; 2] = ["A", "B"];
 
 /// The comparison as a table: a block for each part, a row for each region and picture.
@@ -30,14 +27,14 @@ pub fn table(comparison: &Comparison) -> String {
 }
 
 fn block(out: &mut String, part: &PartComparison, pictures: &[String]) {
-    let _ = write!(out, "\n{:TITLE$}", part.part);
-    for (_, head) in columns() {
-        let _ = write!(out, "{head:>WIDTH$}");
+    let lines: Vec<Line> = part.regions.iter().flat_map(lines).collect();
+    let mut table = Table::new(&lines);
+    table.column(&part.part, |l| l.0.clone());
+    table.column("", |l| l.1.into());
+    for (i, (_, head)) in columns().enumerate() {
+        table.column(head, |l| l.2.get(i).cloned().unwrap_or("-".into()));
     }
-    out.push('\n');
-    for region in &part.regions {
-        rows(out, region);
-    }
+    let _ = write!(out, "\n{}", table.text());
     if let (Some(relmse), Some(structure)) = (part.noise, part.structure_noise) {
         let (relmse, structure) = (short(relmse), short(structure));
         let _ = writeln!(
@@ -63,34 +60,28 @@ fn block(out: &mut String, part: &PartComparison, pictures: &[String]) {
     }
 }
 
-fn rows(out: &mut String, region: &RegionComparison) {
+/// Region, letter of the picture, and scores. There are no scores without a finite pixel.
+type Line = (String, &'static str, Vec<String>);
+
+fn lines(region: &RegionComparison) -> Vec<Line> {
     let mut title = match region.share {
         1.0 => region.region.clone(),
         share => format!("{} ({:.1} %)", region.region, 100.0 * share),
     };
+    let mut lines: Vec<Line> = Vec::new();
     for (letter, scores) in LETTERS.iter().zip(&region.scores) {
-        let _ = write!(out, "  {title:<26}{letter} ");
-        match scores {
-            Some(s) => columns().for_each(|(metric, _)| {
-                let _ = write!(out, "{:>WIDTH$}", short(s.get(metric.key)));
-            }),
-            None => out.push_str(" no pixel is a finite number"),
-        }
-        out.push('\n');
-        title.clear();
+        let cells = |s: &Scores| columns().map(|(m, _)| short(s.get(m.key))).collect();
+        let cells = scores.as_ref().map_or(Vec::new(), cells);
+        lines.push((std::mem::take(&mut title), letter, cells));
     }
     if !region.better.is_empty() {
-        let _ = write!(out, "{:<TITLE$}", "    better");
-        for (metric, _) in columns() {
-            let verdict = region
-                .better
-                .get(metric.key)
-                .map(ToString::to_string)
-                .unwrap_or_default();
-            let _ = write!(out, "{verdict:>WIDTH$}");
-        }
-        out.push('\n');
+        let verdict = |(metric, _): (&Metric, _)| match region.better.get(metric.key) {
+            Some(verdict) => verdict.to_string(),
+            None => String::new(),
+        };
+        lines.push(("  better".into(), "", columns().map(verdict).collect()));
     }
+    lines
 }
 
 /// The metrics that have a column, and its head.

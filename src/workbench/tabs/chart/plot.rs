@@ -3,7 +3,7 @@
 
 use super::choice::Chosen;
 use crate::campaign::charts::ticks;
-use crate::campaign::table::short;
+use crate::results::table::short;
 use egui::{Color32, Pos2, Ui};
 use egui_plot::{GridInput, GridMark, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points};
 
