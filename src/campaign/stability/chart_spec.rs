@@ -1,6 +1,6 @@
 //! The chart that a suite asks for: a dot for each method, static error against stability, with what it costs.
 
-use super::file::{Case, Method};
+use super::case::{Case, Method};
 use crate::campaign::settings::Setting;
 use crate::diagnostics::{At, Entries, Loc, RawText};
 use serde::Deserialize;

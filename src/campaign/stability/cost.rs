@@ -3,10 +3,13 @@
 //! the values of a parameter are taken to be in the order of their costs: halving finds the two between which the first's
 //! time lies, and the nearer is taken.
 
+use super::case::Method;
 use super::chart_spec::CostChart;
-use super::file::{Method, Suite};
+use super::file::Suite;
 use super::plan::{Job, Options, plan};
-use super::sequence::{cell_of, median, place};
+use super::record::{Candidate, Cost};
+use super::score::median;
+use super::sequence::{cell_of, place};
 use crate::campaign::record::{first_line, json, read_json, write_file};
 use crate::campaign::runner::{Progress, Runner};
 use crate::lab::LabError;
@@ -26,81 +29,11 @@ const SCHEMA: &str = "conelab-stability-cost-1";
 /// Largest `cost.json` that is read, bytes.
 const MAX_FILE: u64 = 16 << 20;
 
-/// A method at one value of the parameter.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Candidate {
-    /// The value, RON; empty where nothing is varied.
-    pub value: String,
-    /// [`Job::work`].
-    pub work: String,
-    /// Sum of a frame's passes, ms: the median of each round.
-    pub ms: Vec<f64>,
-    /// The first method's in the same rounds.
-    pub first_ms: Vec<f64>,
-    /// Bytes of all resources of the graph.
-    pub memory_bytes: u64,
-    /// Why it could not be timed.
-    pub failed: Option<String>,
-}
-
-/// What a method costs.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Cost {
-    /// The method.
-    pub method: String,
-    /// What is varied; empty where nothing is.
-    pub parameter: String,
-    /// [`Job::work`] of the first method.
-    pub first: String,
-    /// At every value, or the method as it is.
-    pub candidates: Vec<Candidate>,
-    /// The one that is nearest to the first method's time.
-    pub chosen: Option<usize>,
-}
-
 /// `cost.json`.
 #[derive(Serialize, Deserialize)]
 struct Kept {
     schema: String,
     costs: Vec<Cost>,
-}
-
-impl Candidate {
-    /// Median of the rounds, ms.
-    pub fn time(&self) -> Option<f64> {
-        (!self.ms.is_empty()).then(|| median(self.ms.clone()))
-    }
-
-    /// Its time over that of the first method: median of the rounds' ratios.
-    pub fn ratio(&self) -> Option<f64> {
-        let ratios: Vec<f64> = self
-            .ms
-            .iter()
-            .zip(&self.first_ms)
-            .map(|(own, first)| own / first)
-            .collect();
-        (!ratios.is_empty())
-            .then(|| median(ratios))
-            .filter(|r| r.is_finite() && *r > 0.0)
-    }
-}
-
-impl Cost {
-    /// The one that was taken.
-    pub fn taken(&self) -> Option<&Candidate> {
-        self.candidates.get(self.chosen?)
-    }
-
-    /// Takes the candidate whose time is nearest to the first's.
-    fn choose(&mut self) {
-        let far = |c: &Candidate| c.ratio().map(|r| r.ln().abs());
-        let timed = self
-            .candidates
-            .iter()
-            .enumerate()
-            .filter_map(|(i, c)| Some((i, far(c)?)));
-        self.chosen = timed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|c| c.0);
-    }
 }
 
 /// What all charted methods of a suite cost. What `cost.json` of the folder knows is taken from there, so that a suite that
@@ -227,7 +160,7 @@ pub(super) fn costs(
     costs
         .iter_mut()
         .filter(|c| c.chosen.is_none())
-        .for_each(Cost::choose);
+        .for_each(choose);
     if let Some(cost) = costs
         .iter()
         .find(|c| c.chosen.is_none() && !c.parameter.is_empty())
@@ -315,6 +248,17 @@ fn read(path: &Path) -> Vec<Cost> {
         .ok()
         .filter(|k| k.schema == SCHEMA);
     kept.map_or(Vec::new(), |k| k.costs)
+}
+
+/// Chooses the candidate whose time is nearest to the first method's.
+fn choose(cost: &mut Cost) {
+    let far = |c: &Candidate| c.ratio().map(|r| r.ln().abs());
+    let timed = cost
+        .candidates
+        .iter()
+        .enumerate()
+        .filter_map(|(i, c)| Some((i, far(c)?)));
+    cost.chosen = timed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|c| c.0);
 }
 
 /// The suite with what was chosen.

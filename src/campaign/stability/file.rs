@@ -1,5 +1,6 @@
 //! Suite files: methods, and what moves (docs/stability.md).
 
+use super::case::{Case, Method};
 use super::chart_spec::CostChart;
 use super::motion::Motion;
 use crate::camera_path::CameraPath;
@@ -64,40 +65,6 @@ struct CaseFile {
     variants: Entries<Entries<RawText>>,
 }
 
-/// A method: what it sets over the suite's experiment.
-#[derive(Clone, Debug)]
-pub struct Method {
-    /// Name of the method.
-    pub name: String,
-    /// Settings of the method.
-    pub set: Vec<Setting>,
-}
-
-/// Something that methods are looked at in.
-#[derive(Clone, Debug)]
-pub struct Case {
-    /// Name of the case.
-    pub name: String,
-    /// Name of the variant, if the case has some.
-    pub variant: String,
-    /// For people.
-    pub about: String,
-    /// What it sets over the method.
-    pub set: Vec<Setting>,
-    /// What moves.
-    pub motion: Motion,
-    /// Frames that run, moving, before the first measured one.
-    pub warmup: usize,
-    /// Frames measured, when nothing else is asked for.
-    pub frames: usize,
-    /// Whether more or fewer frames may be asked for: a case with its own number knows what it needs.
-    pub own_frames: bool,
-    /// Names of the methods that it is for; all when empty.
-    pub methods: Vec<String>,
-    /// Whether its voxels are compared with exact ones.
-    pub voxels: bool,
-}
-
 /// A suite.
 #[derive(Clone, Debug)]
 pub struct Suite {
@@ -129,13 +96,6 @@ pub struct Suite {
 
 fn total() -> String {
     "total".into()
-}
-
-impl Case {
-    /// Whether a method runs in it.
-    pub fn is_for(&self, method: &str) -> bool {
-        self.methods.is_empty() || self.methods.iter().any(|m| m == method)
-    }
 }
 
 impl Suite {

@@ -2,6 +2,7 @@
 //! fail in pictures that do not move (docs/stability.md).
 
 mod cameras;
+mod case;
 mod chart;
 mod chart_spec;
 mod cost;
@@ -22,12 +23,13 @@ mod table;
 
 pub use cameras::Cameras;
 pub use chart_spec::{CostChart, EqualTime};
-pub use cost::{Candidate, Cost};
 pub use file::{Suite, check};
 pub use motion::{FrameState, Motion, Unit};
 pub use param_track::ParamTrack;
 pub use plan::{Job, Options, plan};
-pub use record::{About, CaseRecord, FrameScore, Measured, PartResult, Report, Worst};
+pub use record::{
+    About, Candidate, CaseRecord, Cost, FrameScore, Measured, PartResult, Report, Worst,
+};
 pub use run::run;
 pub use score::{Change, Flicker, Step, change, flicker, settling, step};
 pub use sheet::{Failure, failures, sheet, table as failure_table};

@@ -1,7 +1,8 @@
 //! Every method in every case, as something to run, with the number of all that its result depends on.
 
 use super::cameras::Cameras;
-use super::file::{Case, Method, Suite};
+use super::case::{Case, Method};
+use super::file::Suite;
 use super::motion::FrameState;
 use super::param_track::ParamTrack;
 use super::record::{About, Measured, title};

@@ -1,8 +1,7 @@
 //! Static error against stability with costs: rows, table and chart.
 
 use super::chart_spec::CostChart;
-use super::cost::Cost;
-use super::record::{PartResult, Report};
+use super::record::{Cost, PartResult, Report};
 use crate::campaign::charts::{Axis, color, cut, drawn, plane, text};
 use crate::campaign::page::figure;
 use crate::lab::LabError;

@@ -1,7 +1,6 @@
 //! What a suite leaves: `results/ID.json`, one finished method in one case each, and `stability.json`, all of them.
 
-use super::cost::Cost;
-use super::score::{Change, Flicker, Step};
+use super::score::{Change, Flicker, Step, median};
 use crate::campaign::record::{Folder, Record};
 use crate::measure::oracle::Score;
 use crate::metrics::{Noise, Scores};
@@ -140,6 +139,38 @@ pub struct About {
 /// The result of a method in a case.
 pub type CaseRecord = Record<About, Measured>;
 
+/// A method at one value of the parameter.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
+    /// The value, RON; empty where nothing is varied.
+    pub value: String,
+    /// Identifier of its work ([`super::Job::work`]).
+    pub work: String,
+    /// Sum of a frame's passes, ms: the median of each round.
+    pub ms: Vec<f64>,
+    /// The first method's in the same rounds.
+    pub first_ms: Vec<f64>,
+    /// Bytes of all resources of the graph.
+    pub memory_bytes: u64,
+    /// Why it could not be timed.
+    pub failed: Option<String>,
+}
+
+/// What a method costs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    /// The method.
+    pub method: String,
+    /// What is varied; empty where nothing is.
+    pub parameter: String,
+    /// Identifier of the work ([`super::Job::work`]) of the first method.
+    pub first: String,
+    /// At every value, or the method as it is.
+    pub candidates: Vec<Candidate>,
+    /// The one that is nearest to the first method's time.
+    pub chosen: Option<usize>,
+}
+
 /// `stability.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
@@ -178,6 +209,33 @@ impl Report {
             }
         }
         cases
+    }
+}
+
+impl Candidate {
+    /// Median of the rounds, ms.
+    pub fn time(&self) -> Option<f64> {
+        (!self.ms.is_empty()).then(|| median(self.ms.clone()))
+    }
+
+    /// Its time over that of the first method: median of the rounds' ratios.
+    pub fn ratio(&self) -> Option<f64> {
+        let ratios: Vec<f64> = self
+            .ms
+            .iter()
+            .zip(&self.first_ms)
+            .map(|(own, first)| own / first)
+            .collect();
+        (!ratios.is_empty())
+            .then(|| median(ratios))
+            .filter(|r| r.is_finite() && *r > 0.0)
+    }
+}
+
+impl Cost {
+    /// The one that was taken.
+    pub fn taken(&self) -> Option<&Candidate> {
+        self.candidates.get(self.chosen?)
     }
 }
 

@@ -172,3 +172,9 @@ pub fn settling(errors: &[f64], at: usize) -> Option<usize> {
     let late = after.iter().rposition(|e| !within(*e, SETTLED));
     within(after[after.len() - 2], AT_REST).then(|| late.map_or(1, |l| l + 2))
 }
+
+/// The median; of an even number of values the upper one of the two in the middle.
+pub(super) fn median(mut list: Vec<f64>) -> f64 {
+    list.sort_by(f64::total_cmp);
+    list.get(list.len() / 2).copied().unwrap_or(0.0)
+}

@@ -4,6 +4,7 @@ use super::motion::{FrameState, Motion};
 use super::pictures::Panels;
 use super::plan::Job;
 use super::record::{Measured, Worst, picture};
+use super::score::median;
 use super::series::{Known, PartSeries};
 use crate::campaign::record::File;
 use crate::campaign::runner::Runner;
@@ -291,10 +292,4 @@ fn voxels(
         }
         Err(other) => Err(other),
     }
-}
-
-/// The middle one of some numbers; the upper of two.
-pub(super) fn median(mut list: Vec<f64>) -> f64 {
-    list.sort_by(f64::total_cmp);
-    list.get(list.len() / 2).copied().unwrap_or(0.0)
 }

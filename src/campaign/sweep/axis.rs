@@ -1,11 +1,13 @@
 //! Axes of a sweep: lists, ranges, named settings, lists that go together, samples.
 
-use super::points::MAX_POINTS;
 use crate::campaign::points::Labels;
 use crate::campaign::settings::{Setting, settings};
 use crate::diagnostics::{At, Entries, Items, Loc, RawText};
 use crate::scene::splitmix;
 use serde::Deserialize;
+
+/// Most points of a sweep.
+pub(super) const MAX_POINTS: usize = 20_000;
 
 /// An axis as it stands in the file.
 #[derive(Clone, Debug, Deserialize)]

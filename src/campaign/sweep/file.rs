@@ -1,7 +1,7 @@
 //! Sweep files: which experiments, and what is varied (docs/sweeps.md).
 
-use super::axis::{Axis, Choice, choices};
-use super::points::{MAX_POINTS, Sweep};
+use super::axis::{Axis, Choice, MAX_POINTS, choices};
+use super::points::Sweep;
 use crate::campaign::settings::settings;
 use crate::campaign::source::Source;
 use crate::diagnostics::{Diagnostic, Entries, Items, Loc, Place, RawText};

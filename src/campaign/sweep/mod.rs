@@ -11,7 +11,7 @@ mod table;
 
 pub use super::points::Subject;
 pub use list::{check, list};
-pub use points::{MAX_POINTS, NOTHING, SCENE, SET, Sweep};
+pub use points::{NOTHING, SCENE, SET, Sweep};
 pub use record::{About, Collected, Manifest, ManifestPoint, PointRecord, collect, points_in};
 pub use run::{Measuring, Options, Shard, run, write_table};
 pub use table::{csv, parts_of};

@@ -1,6 +1,6 @@
 //! A sweep as a list of points.
 
-use super::axis::Choice;
+use super::axis::{Choice, MAX_POINTS};
 use crate::campaign::points::Labels;
 use crate::campaign::settings::{Axis, Setting, apply, lines};
 use crate::diagnostics::Diagnostic;
@@ -9,9 +9,6 @@ use crate::lab::LabError;
 use crate::measure::Frames;
 use crate::measure::reference::ALL_BOUNCES;
 use std::path::PathBuf;
-
-/// Most points of a sweep.
-pub const MAX_POINTS: usize = 20_000;
 
 /// What [`Sweep::one_at_a_time`] varies: the scene,
 pub const SCENE: &str = "scene";
