@@ -183,9 +183,7 @@ fn the_method_is_known_to_graphs_and_shaders_alone() {
 fn only_what_is_drawn_knows_the_windows_library() {
     let mut list = Vec::new();
     sources(&common::root().join("src"), "", &mut list);
-    let allowed = |file: &str| {
-        DRAWS.iter().any(|d| file.starts_with(d)) || file == "campaign/stability/sheet.rs"
-    };
+    let allowed = |file: &str| DRAWS.iter().any(|d| file.starts_with(d));
     let wrong: Vec<_> = list
         .iter()
         .filter(|(f, t)| t.contains("egui") && !allowed(f))

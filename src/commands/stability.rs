@@ -42,8 +42,8 @@ pub struct StabilityArgs {
     /// Only these methods, and the suite's first one.
     #[arg(long, value_name = "METHOD", value_delimiter = ',')]
     methods: Vec<String>,
-    /// Draw the worst case of each method on one picture, and print a table of them, Markdown.
-    #[arg(long, value_name = "FILE.jpg")]
+    /// Write a page with the worst cases of each method, and print them as a Markdown table.
+    #[arg(long, value_name = "FILE.html")]
     sheet: Option<PathBuf>,
     #[command(flatten)]
     device: DeviceArgs,
@@ -63,7 +63,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
         return Err(LabError::Request("--spp must be 1 to 1048576".into()));
     }
     if let Some(sheet) = &args.sheet {
-        super::writable(sheet, &["jpg", "jpeg"])?;
+        super::writable(sheet, &["html"])?;
     }
     let home = Workspace::find()?;
     let folder = args
@@ -107,8 +107,8 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
     );
     if let Some(path) = &args.sheet {
         let list = failures(&report);
-        let bytes = sheet(&list, &options.folder)?;
-        write_file(path, &bytes)?;
+        let page = sheet(&suite.name, &list, &options.folder)?;
+        write_file(path, page.as_bytes())?;
         say!("\n{}wrote {}", failure_table(&list), path.display());
     }
     say!("{} done, {} failed", counts.done, counts.failed);

@@ -6,6 +6,7 @@ mod case;
 mod chart;
 mod chart_spec;
 mod cost;
+mod failures;
 mod file;
 mod motion;
 mod page;
@@ -18,11 +19,11 @@ mod run;
 mod score;
 mod sequence;
 mod series;
-mod sheet;
 mod table;
 
 pub use cameras::Cameras;
 pub use chart_spec::{CostChart, EqualTime};
+pub(crate) use failures::{failures, sheet, table as failure_table};
 pub use file::{Suite, check};
 pub use motion::{FrameState, Motion, Unit};
 pub use param_track::ParamTrack;
@@ -32,4 +33,3 @@ pub use record::{
 };
 pub use run::run;
 pub use score::{Change, Flicker, Step, change, flicker, settling, step};
-pub use sheet::{Failure, failures, sheet, table as failure_table};

@@ -9,7 +9,7 @@ use crate::results::table::{Table, cell, short, shortly};
 use maud::{Markup, html};
 use std::collections::BTreeSet;
 
-const STYLE: &str = "body{font:15px/1.45 sans-serif;margin:2em auto;max-width:1150px;padding:0 1em;color:#222}\
+pub(super) const STYLE: &str = "body{font:15px/1.45 sans-serif;margin:2em auto;max-width:1150px;padding:0 1em;color:#222}\
 table{border-collapse:collapse;margin:.6em 0}th,td{padding:.2em .6em;text-align:right;border-bottom:1px solid #ddd}\
 th:first-child,td:first-child{text-align:left}.noise{color:#888;font-style:italic}.bad{color:#a33}\
 figure{margin:1em 0}figcaption{color:#555;font-size:13px}img{max-width:100%;image-rendering:pixelated}svg{max-width:100%;height:auto}\

@@ -10,7 +10,7 @@ use image::{ExtendedColorType, ImageEncoder};
 /// Panels are at least so wide, pixels; small ones are enlarged without smoothing.
 const WIDTH: usize = 240;
 /// White between panels, pixels.
-pub(super) const GAP: usize = 4;
+const GAP: usize = 4;
 
 /// Pictures of one size, displayed, and a difference.
 pub(super) struct Panels {
