@@ -158,11 +158,9 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
 
 fn why(stop: Stop) -> &'static str {
     match stop {
-        Stop::Local => {
-            "no step of one parameter, no promising pair of steps, and nothing that all trials together promise is better"
-        }
-        Stop::Evaluations => "the evaluations are used up",
-        Stop::Unreachable => "no step comes nearer to the bound",
+        Stop::Local => "no setting near the Pareto front is better",
+        Stop::Evaluations => "all evaluations are used",
+        Stop::Unreachable => "no setting is within the bound",
     }
 }
 

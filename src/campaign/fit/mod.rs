@@ -1,6 +1,5 @@
 //! The cheapest setting that stays within a bound: a search over a few values of a few parameters.
 
-mod model;
 mod run;
 mod search;
 
