@@ -5,8 +5,8 @@ macro_rules! warn {
     ($($text:tt)*) => { eprintln!("{}", $crate::diagnostics::excerpt::harmless(&format!($($text)*))) };
 }
 
-/// Like `println!`, without the control characters that a file's names may hold; [`output::written`] tells whether it
-/// could be printed.
+/// Like `println!`, without the control characters that a file's names may hold;
+/// [`output::written`] tells whether it could be printed.
 macro_rules! say {
     ($($text:tt)*) => { $crate::commands::output::put(format_args!("{}\n", format_args!($($text)*))) };
 }
@@ -72,29 +72,33 @@ enum Command {
     Screenshot(screenshot::ScreenshotArgs),
     /// Render an experiment to a picture, and its timings to JSON.
     Render(render::RenderArgs),
-    /// Render an experiment and keep it: pictures, sources, settings and measurements in captures/NAME.
+    /// Render an experiment and keep it: pictures, sources, settings and measurements in
+    /// captures/NAME.
     Capture(capture::CaptureArgs),
-    /// Render a capture again from its own sources and compare every texel; exit 1 on any difference.
+    /// Render a capture again from its own sources and compare every texel; exit 1 on any
+    /// difference.
     Replay(replay::ReplayArgs),
-    /// Time configurations in turn and print tables of their stages and totals, or compare with recorded times; exit 1 if
-    /// one failed or became slower.
+    /// Time configurations round by round and print tables of their stages and totals, or compare
+    /// with recorded times. Exit 1 if one failed or became slower.
     Bench(bench::BenchArgs),
-    /// Measure every combination of what a sweep file varies; goes on where it was stopped. Exit 1 if points failed.
+    /// Measure every combination of a sweep file; continues a stopped sweep. Exit 1 if points
+    /// failed.
     Sweep(sweep::SweepArgs),
-    /// Look at methods while camera, actors or light move, frame by frame against the reference; goes on where it was
-    /// stopped. Exit 1 if one failed.
+    /// Look at methods while camera, actors or light move, frame by frame against the reference;
+    /// goes on where it was stopped. Exit 1 if one failed.
     Stability(stability::StabilityArgs),
     /// Make a page, charts and a table of sweeps: error against time.
     Report(report::ReportArgs),
     /// Compare pictures or experiments with a reference: table, JSON, maps of the error.
     Compare(compare::CompareArgs),
-    /// Save an experiment under a new name: what differs from the graph's defaults, and no more.
+    /// Save an experiment under a new name, with only the differences from the graph's defaults.
     Save(save::SaveArgs),
-    /// Gather ground truth for an experiment by path tracing, into captures/reference.
+    /// Gather a path-traced reference for an experiment, into captures/reference.
     Reference(reference::ReferenceArgs),
-    /// Find the cheapest setting of an experiment that stays within an error, or the best within a time.
+    /// Find the cheapest setting of an experiment that stays within an error, or the best within a
+    /// time.
     Fit(fit::FitArgs),
-    /// Tell what voxels, cones and filtering each add to an experiment's error.
+    /// Print the error that voxels, cones and filtering each add to an experiment.
     #[command(alias = "split")]
     Ablate(ablate::AblateArgs),
     /// Compare the voxels of an experiment with what its triangles exactly overlap.
@@ -107,7 +111,7 @@ enum Command {
     Check(check::CheckArgs),
     /// List the Vulkan devices.
     Devices,
-    /// Print what a shell needs to complete this program's commands and options.
+    /// Print the completion script of a shell.
     Completions {
         /// The shell.
         shell: clap_complete::Shell,
@@ -128,8 +132,8 @@ struct DeviceArgs {
     /// Turn on the Vulkan validation layer; any message is an error.
     #[arg(long, env = "CONELAB_VALIDATION")]
     validate: bool,
-    /// Seconds that a frame may take before the device counts as hung (ten times as long on a software device); 20 in the
-    /// window, without end elsewhere.
+    /// Seconds that a frame may take before the device counts as hung (ten times as long on a
+    /// software device); 20 in the window, without end elsewhere.
     #[arg(long, env = "CONELAB_HANG_AFTER", value_name = "SECONDS", value_parser = seconds)]
     hang_after: Option<Duration>,
 }
@@ -169,14 +173,11 @@ struct SceneArgs {
 }
 
 /// Runs a command; the error is for the user.
-///
-/// # Errors
-/// Everything that a command can fail with.
 pub fn run(cli: Cli) -> Result<(), LabError> {
     run_command(cli).and_then(|()| written())
 }
 
-/// What is told of an error: whose places say that it is one, as it is.
+/// The message of an error. Diagnostics print as they are; other errors get an "error:" prefix.
 pub fn told(error: &LabError) -> String {
     match error {
         LabError::Input(_) => error.to_string(),
@@ -239,7 +240,8 @@ fn open_scene(name: &str) -> Result<crate::scene::Scene, LabError> {
     Ok(scene)
 }
 
-/// A scene as the command line or an experiment names it: a built-in's name, or a file here or in the program's folder.
+/// A scene as the command line or an experiment names it: a built-in's name, or a file here or in
+/// the program's folder.
 fn scene_file(name: &str) -> String {
     if name.contains('.') {
         spec_of(&found(&path_of(name)))

@@ -122,7 +122,7 @@ fn the_steps_of_a_graph_are_there_as_well() {
         &["--steps", "--scene", "cornell", "--set", "exact_rays=4"],
     ));
     assert!(
-        said.contains("in brackets what the step adds") && said.contains("diffuse"),
+        said.contains("in brackets the error that the step adds") && said.contains("diffuse"),
         "{said}"
     );
 }

@@ -10,7 +10,8 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
 
-/// Colours in the order in which they are given out, told apart by people who see red and green alike (Okabe and Ito).
+/// Colours in the order of use. They differ for people with red-green colour blindness (Okabe and
+/// Ito).
 pub const COLORS: [RGBColor; 10] = [
     RGBColor(0, 114, 178),
     RGBColor(230, 159, 0),
@@ -23,9 +24,9 @@ pub const COLORS: [RGBColor; 10] = [
     RGBColor(150, 100, 50),
     RGBColor(180, 180, 180),
 ];
-/// Of lines that are there to compare with.
+/// Colour of lines for comparison.
 const GREY: RGBColor = RGBColor(120, 120, 120);
-/// Of all texts.
+/// Font of all texts.
 pub const FONT: &str = "sans-serif";
 /// Width of bars with their labels, pixels; of the labels alone, and the characters that fit.
 const WIDTH: i32 = 1100;
@@ -39,17 +40,14 @@ const ROW: i32 = 22;
 const LINES: (u32, u32) = (900, 420);
 const PLOT: u32 = 680;
 
-/// What is drawn on.
+/// Drawing area of a chart.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Axes that are drawn on.
 pub type Plane<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
-/// What can go wrong.
+/// Error of the drawing library.
 pub type Failure = Box<dyn std::error::Error>;
 
-/// A chart of so many pixels.
-///
-/// # Errors
-/// Drawing into memory gives none, whatever the data.
+/// A chart of this size, pixels.
 pub fn drawn(
     title: &str,
     size: (u32, u32),
@@ -70,19 +68,19 @@ pub fn drawn(
     Ok(svg)
 }
 
-/// A name as that of a file.
+/// The name as a file name.
 pub fn file_name(name: &str) -> String {
     name.chars()
         .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
         .collect()
 }
 
-/// Text of so many pixels.
+/// Style of a text of this size, pixels.
 pub fn text(size: i32, h: HPos, v: VPos) -> TextStyle<'static> {
     TextStyle::from((FONT, size)).pos(Pos::new(h, v))
 }
 
-/// A text with at most so many characters.
+/// The text, cut to a number of characters.
 pub fn cut(text: &str, most: usize) -> String {
     match text.chars().count() <= most {
         true => text.to_string(),
@@ -100,7 +98,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// At equal distances.
+    /// Axis with equal distances.
     pub fn linear(title: &str, range: (f64, f64)) -> Axis {
         Axis {
             title: title.into(),
@@ -110,7 +108,7 @@ impl Axis {
         }
     }
 
-    /// At equal ratios: both ends are above 0.
+    /// Axis with equal ratios. Both ends must be above 0.
     pub fn log(title: &str, range: (f64, f64)) -> Axis {
         Axis {
             title: format!("{title} (log)"),
@@ -120,7 +118,7 @@ impl Axis {
         }
     }
 
-    /// With these numbers written to it.
+    /// Writes these numbers to the axis.
     pub fn marked(self, marks: Vec<f64>) -> Axis {
         Axis { marks, ..self }
     }
@@ -130,7 +128,7 @@ impl Ranged for Axis {
     type FormatOption = DefaultFormatting;
     type ValueType = f64;
 
-    /// What is below a logarithmic axis lies at its end.
+    /// Values below a logarithmic axis are clamped to its end.
     fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
         let (low, high) = self.range;
         let part = match self.log {
@@ -153,7 +151,7 @@ impl Ranged for Axis {
     }
 }
 
-/// Round numbers of a range at equal distances, at most about six.
+/// Round numbers at equal distances in a range, about six at most.
 fn steps((low, high): (f64, f64)) -> Vec<f64> {
     let rough = (high - low) / 5.0;
     let decade = 10f64.powf(rough.log10().floor());
@@ -169,7 +167,7 @@ fn steps((low, high): (f64, f64)) -> Vec<f64> {
         .collect()
 }
 
-/// Round numbers in a range at equal ratios, 3 to about 12 of them.
+/// Round numbers at equal ratios in a range, 3 to about 12.
 pub fn ticks((low, high): (f64, f64)) -> Vec<f64> {
     let inside = |steps: &[f64]| -> Vec<f64> {
         let decades = (low.log10().floor() as i32)..=(high.log10().ceil() as i32);
@@ -192,9 +190,6 @@ pub fn ticks((low, high): (f64, f64)) -> Vec<f64> {
 }
 
 /// Axes with their titles and numbers.
-///
-/// # Errors
-/// As [`drawn`].
 pub fn plane<'a, 'b>(
     area: &'a Area<'b>,
     title: &str,
@@ -223,18 +218,14 @@ pub fn plane<'a, 'b>(
 
 /// A line of a chart.
 pub struct Line {
-    /// What it is.
     pub name: String,
-    /// From left to right.
+    /// Points from left to right.
     pub points: Vec<(f64, f64)>,
-    /// Whether it is there to compare with: thin and grey.
+    /// Whether the line is for comparison: thin and grey.
     pub grey: bool,
 }
 
-/// Lines on axes, with their names beside them.
-///
-/// # Errors
-/// As [`drawn`].
+/// Lines with their names on the right.
 pub fn lines(title: &str, x: &Axis, y: &Axis, lines: &[Line]) -> Result<String, LabError> {
     drawn(title, LINES, |area| {
         let (plot, legend) = area.split_horizontally(PLOT);
@@ -256,14 +247,12 @@ pub fn lines(title: &str, x: &Axis, y: &Axis, lines: &[Line]) -> Result<String, 
     })
 }
 
-/// A bar.
 #[derive(Clone, Debug)]
 pub struct Bar {
-    /// What it is.
     pub label: String,
     /// Names and lengths, from left to right.
     pub parts: Vec<(String, f64)>,
-    /// Whether only its outline is drawn: it is not told apart from noise.
+    /// Whether the value is within the noise; only the outline is drawn.
     pub hollow: bool,
 }
 
@@ -273,11 +262,8 @@ impl Bar {
     }
 }
 
-/// Horizontal bars, one below the other, on one scale, with the names of their parts above them. Numbers at the scale are
-/// of a `unit`; those at the bars are written by `shown`.
-///
-/// # Errors
-/// As [`drawn`].
+/// Horizontal bars on one scale, with a legend above them. The scale has a `unit`; `shown` formats
+/// the numbers of the bars.
 pub fn bars(
     title: &str,
     unit: &str,
@@ -289,7 +275,7 @@ pub fn bars(
         .flat_map(|b| &b.parts)
         .map(|p| p.0.as_str())
         .collect();
-    // The legend stands in rows of four.
+    // The legend has four entries per row.
     let pixels = |rows: usize| ROW.saturating_mul(i32::try_from(rows).unwrap_or(i32::MAX));
     let top = 44 + pixels(names.len().div_ceil(4));
     let bottom = top.saturating_add(pixels(bars.len()));
@@ -356,7 +342,7 @@ pub fn bars(
     })
 }
 
-/// The colour of the i-th of some things.
+/// Colour of the entry with this index.
 pub fn color(i: usize) -> RGBColor {
     COLORS[i % COLORS.len()]
 }

@@ -1,4 +1,4 @@
-//! The points of campaigns, each with the number of everything that its result depends on.
+//! Points of campaigns. The identifier of a point hashes everything that its result depends on.
 
 use crate::experiment::{Experiment, placed_text};
 use crate::files::content_id;
@@ -10,10 +10,10 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
-/// The values of a point, by the names of what is varied.
+/// Names and values of the varied settings.
 pub type Labels = Vec<(String, String)>;
 
-/// Values with their names, for people; an experiment's name says enough.
+/// Names and values as text. The value of `experiment` has no name.
 pub fn labelled<'l>(labels: impl IntoIterator<Item = (&'l String, &'l String)>) -> String {
     let label = |(n, v): (&String, &String)| {
         if n == "experiment" {
@@ -25,35 +25,31 @@ pub fn labelled<'l>(labels: impl IntoIterator<Item = (&'l String, &'l String)>) 
     labels.into_iter().map(label).collect::<Vec<_>>().join(", ")
 }
 
-/// Parts of the light, each once: the total, then what it is made of by name.
+/// Parts of the light, each once: the total first, the others by name.
 pub fn total_first<'p>(parts: impl Iterator<Item = &'p String>) -> Vec<String> {
     let parts: BTreeSet<(bool, &String)> = parts.map(|p| (p != "total", p)).collect();
     parts.into_iter().map(|p| p.1.clone()).collect()
 }
 
-/// Digits of a point's number.
+/// Digits of an identifier.
 pub const DIGITS: usize = 32;
 
-/// A picture, whatever method makes it.
+/// The image content, for every method.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Subject {
     /// The scene's name.
     pub scene: String,
-    /// SHA-256 of its content, light included.
+    /// SHA-256 of the scene, light included.
     pub sha256: String,
-    /// The camera, written out.
     pub camera: String,
     /// Width and height, pixels.
     pub size: (u32, u32),
-    /// Seconds, written out.
+    /// Time as text, s.
     pub time: String,
 }
 
 impl Subject {
-    /// What an experiment looks at in a scene of that content.
-    ///
-    /// # Errors
-    /// A camera that the scene does not have.
+    /// The subject of an experiment, for a scene with this SHA-256.
     pub fn of(experiment: &Experiment, scene: &Scene, sha256: String) -> Result<Subject, LabError> {
         let camera = placed_text(&camera_of(experiment, scene)?);
         let (size, time) = (experiment.size, format!("{:?}", experiment.time));
@@ -67,38 +63,36 @@ impl Subject {
     }
 }
 
-/// A point that is to be measured.
+/// A point to measure.
 #[derive(Clone)]
 pub struct SweepPoint {
-    /// 32 hexadecimal digits: SHA-256 of graph, shaders, parameters, scene, camera, size, time and frames. Points of
-    /// one number have one result, up to times.
+    /// 32 hexadecimal digits: SHA-256 of graph, shaders, parameters, scene, camera, size, time and
+    /// frames. Points with the same identifier have the same result, except times.
     pub id: String,
-    /// The experiment that is run.
     pub experiment: Experiment,
-    /// The scene, lit as the experiment says; an empty one where it is absent.
+    /// The scene with the experiment's light, empty if it is absent.
     pub scene: Arc<Scene>,
-    /// Why the scene is not on this machine, or cannot be read: the point cannot be measured here.
+    /// Reason that the scene cannot be opened on this machine.
     pub absent: Option<String>,
     /// Scene, camera, size and time of the picture.
     pub subject: Subject,
-    /// Its values, by the names of what is varied.
+    /// Values of the varied settings.
     pub labels: Labels,
 }
 
 /// Opens a scene by name or path.
 pub type OpenScene<'a> = dyn Fn(&str) -> Result<Scene, LabError> + 'a;
 
-/// Makes points; scenes and graphs are opened and hashed once for all of them.
+/// Creates points. Opens and hashes each scene and graph once.
 pub struct PointBuilder<'a> {
     open: &'a OpenScene<'a>,
     scenes: HashMap<String, Arc<Scene>>,
-    /// Scenes under changed light, by scene and light.
+    /// Scenes with changed light, by scene and light.
     lit: HashMap<String, (Arc<Scene>, String)>,
     graphs: HashMap<String, String>,
 }
 
 impl<'a> PointBuilder<'a> {
-    /// Without any scene yet.
     pub fn new(open: &'a OpenScene<'a>) -> PointBuilder<'a> {
         PointBuilder {
             open,
@@ -108,10 +102,7 @@ impl<'a> PointBuilder<'a> {
         }
     }
 
-    /// The point of an experiment.
-    ///
-    /// # Errors
-    /// Graph, shaders, parameters, scene or camera that cannot be had.
+    /// Creates the point of an experiment.
     pub fn point(
         &mut self,
         home: &Workspace,
@@ -156,7 +147,7 @@ impl<'a> PointBuilder<'a> {
         })
     }
 
-    /// The scene under the experiment's light, with its hash.
+    /// The scene with the experiment's light, and its hash.
     fn scene(&mut self, experiment: &Experiment) -> Result<(Arc<Scene>, String), LabError> {
         let key = format!("{:?} {}", experiment.scene, experiment.light());
         if let Some(found) = self.lit.get(&key) {
@@ -177,7 +168,8 @@ impl<'a> PointBuilder<'a> {
     }
 }
 
-/// SHA-256 over the text of a graph's files and of its shaders with their includes; where they lie is left out.
+/// SHA-256 over the text of a graph's files and of its shaders with their includes, without their
+/// paths.
 fn graph_hash(loaded: &Loaded) -> String {
     let mut texts: BTreeSet<(String, &str)> = BTreeSet::new();
     for (path, text) in loaded.graph.sources.texts() {

@@ -1,5 +1,6 @@
-//! What a campaign keeps of each point: a record named by all that its result depends on, in a folder that runs, shards
-//! and other machines share. Folders may come from anywhere and are not trusted.
+//! Records of points, in a folder that runs, shards and machines share. A record is named by the
+//! hash of everything that its result depends on. Folders may come from anywhere and are not
+//! trusted.
 
 use crate::files::{read_input, write_lasting};
 use crate::lab::LabError;
@@ -12,30 +13,27 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome<T> {
-    /// Measured.
     Done(Box<T>),
-    /// The error.
+    /// Text of the error.
     Failed(String),
 }
 
-/// A finished point: `A` says what it is of, `T` is what was measured.
+/// A finished point: `A` describes it, `T` has its measurements.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record<A, T> {
     /// Version of the file.
     pub schema: String,
-    /// Number of the point: 32 hexadecimal digits of all that its result depends on.
+    /// Identifier of the point: 32 hexadecimal digits.
     pub id: String,
-    /// What it is of.
+    /// Description of the point.
     #[serde(flatten)]
     pub about: A,
-    /// The device.
     pub device: DeviceStats,
-    /// Result of the point.
     pub outcome: Outcome<T>,
 }
 
 impl<A, T> Record<A, T> {
-    /// What was measured.
+    /// The measurements, `None` if the point failed.
     pub fn done(&self) -> Option<&T> {
         match &self.outcome {
             Outcome::Done(measured) => Some(measured),
@@ -43,7 +41,7 @@ impl<A, T> Record<A, T> {
         }
     }
 
-    /// The first line of the error, if it failed.
+    /// First line of the error.
     pub fn error(&self) -> Option<&str> {
         match &self.outcome {
             Outcome::Done(_) => None,
@@ -52,10 +50,9 @@ impl<A, T> Record<A, T> {
     }
 }
 
-/// A folder of records, `KIND/ID.json`, with other files beside them.
+/// A folder of records, `KIND/ID.json`, and other files.
 #[derive(Clone, Debug)]
 pub struct Folder {
-    /// Its path.
     pub path: PathBuf,
     /// Name of the folder with the records.
     pub kind: &'static str,
@@ -70,16 +67,14 @@ impl Folder {
         self.path.join(self.kind).join(format!("{id}.json"))
     }
 
-    /// The record of a point, if it is finished. A damaged one, or one of another version, is not: it is measured again.
+    /// The record of a finished point. Damaged records and other versions are ignored, so that the
+    /// point is measured again.
     pub fn read<A: DeserializeOwned, T: DeserializeOwned>(&self, id: &str) -> Option<Record<A, T>> {
         let record = read_json::<Record<A, T>>(&self.record(id), self.most).ok()?;
         (record.schema == self.schema && record.id == id).then_some(record)
     }
 
-    /// Keeps a point: first its files, by their paths in the folder, so that a point that is there is whole.
-    ///
-    /// # Errors
-    /// A folder that cannot be written to.
+    /// Writes a record. Its files are written first, so that a point with a record is complete.
     pub fn write<A: Serialize, T: Serialize>(
         &self,
         record: &Record<A, T>,
@@ -89,8 +84,8 @@ impl Folder {
         write_file(&self.record(&record.id), &json(record)?)
     }
 
-    /// Removes what runs that were killed left half written in some folders. Other shards may be writing there: only
-    /// what is an hour old.
+    /// Removes partial files of killed runs. Other shards may be writing, so files younger than an
+    /// hour stay.
     pub fn clean(&self, folders: &[&str]) {
         let old = |e: &std::fs::DirEntry| {
             let age = e
@@ -107,54 +102,41 @@ impl Folder {
                 .flatten()
                 .flatten();
             for entry in entries.filter(old) {
-                // What cannot be deleted only takes room.
+                // Files that cannot be deleted do no harm.
                 let _ = std::fs::remove_file(entry.path());
             }
         }
     }
 }
 
-/// A file: its path in a folder, and its bytes.
+/// Path in a folder, and content.
 pub type File = (String, Vec<u8>);
 
-/// Writes files to a folder.
-///
-/// # Errors
-/// A folder that cannot be written to.
 pub fn write_files(folder: &Path, files: &[File]) -> Result<(), LabError> {
     files
         .iter()
         .try_for_each(|(name, bytes)| write_file(&folder.join(name), bytes))
 }
 
-/// Writes a file, whole and lasting.
-///
-/// # Errors
-/// As [`write_lasting`].
+/// Writes a file completely and durably.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), LabError> {
     Ok(write_lasting(path, bytes)?)
 }
 
-/// A value as JSON, for a file.
-///
-/// # Errors
-/// A value that JSON does not have.
+/// The value as JSON for a file.
 pub fn json(value: &impl Serialize) -> Result<Vec<u8>, LabError> {
     let mut bytes = serde_json::to_vec_pretty(value).map_err(LabError::making("JSON"))?;
     bytes.push(b'\n');
     Ok(bytes)
 }
 
-/// Reads a JSON file of at most so many bytes.
-///
-/// # Errors
-/// What is wrong with it.
+/// Reads a JSON file of at most `most` bytes.
 pub fn read_json<T: DeserializeOwned>(path: &Path, most: u64) -> Result<T, String> {
     let bytes = read_input(path, most).map_err(|e| format!("cannot read it: {e}"))?;
     serde_json::from_slice(&bytes).map_err(|e| format!("it is damaged: {e}"))
 }
 
-/// What people are told of an error in a table.
+/// First line of an error, for tables.
 pub fn first_line(text: &str) -> &str {
     text.lines().next().unwrap_or_default()
 }

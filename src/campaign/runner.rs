@@ -1,4 +1,4 @@
-//! Points measured one after another, each kept as soon as it is finished, on a device that may be lost.
+//! Runs jobs one by one, records each result at once, and opens a lost device again.
 
 use super::points::{Labels, OpenScene, PointBuilder, SweepPoint};
 use super::record::{File, Folder, Outcome, Record};
@@ -16,38 +16,31 @@ use std::sync::Arc;
 
 /// Progress of a campaign.
 pub enum Progress {
-    /// Points: to measure, and finished before.
+    /// Number of points to measure, and of those that are already finished.
     Begins {
-        /// To measure.
         todo: usize,
-        /// Finished before.
         before: usize,
     },
-    /// Something worth knowing.
     Note(String),
-    /// What is done now.
     Runs(String),
-    /// A reference is being gathered.
+    /// Progress of a reference.
     Gathers(Gathered),
-    /// What a search has tried: one line.
+    /// One line about a trial of a search.
     Tried(String),
-    /// A point is finished: what it is, and what there is to say of it.
+    /// A point is finished: its title and its notes.
     Finished(String, Vec<String>),
     /// All points are finished.
     Ends,
 }
 
-/// Counts of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Measured.
     pub done: usize,
-    /// Failed.
     pub failed: usize,
 }
 
 impl Counts {
-    /// Those of some records.
+    /// Counts the outcomes of records.
     pub fn of<A, T>(records: &[Record<A, T>]) -> Counts {
         let done = records.iter().filter(|r| r.done().is_some()).count();
         Counts {
@@ -57,15 +50,13 @@ impl Counts {
     }
 }
 
-/// Opens the device.
 pub type Open<'a> = dyn Fn() -> Result<Lab, LabError> + 'a;
 
-/// A device, and what measurements leave to each other.
+/// A device with caches for the next measurements.
 pub struct Runner<'a> {
     open: &'a Open<'a>,
-    /// The device.
     pub lab: Lab,
-    /// What the measurements before have left.
+    /// Caches of earlier measurements.
     pub warm: Warm,
     points: PointBuilder<'a>,
     on_progress: &'a mut dyn FnMut(Progress),
@@ -73,41 +64,32 @@ pub struct Runner<'a> {
 
 /// A point of a campaign.
 pub trait Job {
-    /// What records say of it.
+    /// Description of the point in its record.
     type About: Serialize + DeserializeOwned;
-    /// What is measured.
+    /// Measurements of a job.
     type Measured: Serialize + DeserializeOwned;
 
-    /// Its number.
     fn id(&self) -> &str;
 
-    /// What it is, for people.
     fn title(&self) -> String;
 
-    /// What its record says of it.
-    ///
-    /// # Errors
-    /// What is wrong with its graph or scene.
+    /// Description for the record.
     fn about(&self, runner: &mut Runner, folder: &Folder) -> Result<Self::About, LabError>;
 
-    /// What was measured that is worth a warning.
+    /// Warnings of a measurement.
     fn warnings(measured: &Self::Measured) -> &[String];
 }
 
 /// The record of a job.
 pub type RecordOf<J> = Record<<J as Job>::About, <J as Job>::Measured>;
 
-/// What a job has measured, with files to be kept beside its record.
+/// Measurements of a job, with files for the folder.
 pub type Taken<J> = Result<(<J as Job>::Measured, Vec<File>), LabError>;
 
-/// The record of a job that is kept, if there is one.
+/// Returns the valid record of a job, if there is one.
 pub type Kept<'a, J> = dyn FnMut(&mut Runner, &J) -> Result<Option<RecordOf<J>>, LabError> + 'a;
 
 impl<'a> Runner<'a> {
-    /// Opens the device.
-    ///
-    /// # Errors
-    /// No device.
     pub fn open(
         open: &'a Open<'a>,
         open_scene: &'a OpenScene<'a>,
@@ -124,9 +106,6 @@ impl<'a> Runner<'a> {
     }
 
     /// The point of an experiment.
-    ///
-    /// # Errors
-    /// As [`PointBuilder::point`].
     pub fn point(
         &mut self,
         experiment: Experiment,
@@ -137,15 +116,11 @@ impl<'a> Runner<'a> {
             .point(&self.lab.home, &mut self.warm, experiment, labels, frames)
     }
 
-    /// Takes progress.
     pub fn tell(&mut self, progress: Progress) {
         (self.on_progress)(progress);
     }
 
     /// A reference, see [`Warm::reference`].
-    ///
-    /// # Errors
-    /// As [`Warm::reference`].
     pub fn reference(
         &mut self,
         experiment: &Experiment,
@@ -164,11 +139,8 @@ impl<'a> Runner<'a> {
         })
     }
 
-    /// The records of some jobs, in order: those that are `kept`, and those that `measure` measures now. An error that
-    /// belongs to a job is kept in its place.
-    ///
-    /// # Errors
-    /// A folder that cannot be written to; no device; the errors of `kept`.
+    /// Records of jobs, in order. `kept` returns existing records, `measure` measures the others.
+    /// An error of a job becomes its record.
     pub fn run<J: Job>(
         &mut self,
         folder: &Folder,
@@ -196,10 +168,7 @@ impl<'a> Runner<'a> {
         Ok(records)
     }
 
-    /// The record of one job: the one that is `kept`, or what `measure` measures now; see [`Runner::run`].
-    ///
-    /// # Errors
-    /// As [`Runner::run`].
+    /// Record of one job, see [`Runner::run`].
     pub fn one<J: Job>(
         &mut self,
         folder: &Folder,
@@ -222,7 +191,7 @@ impl<'a> Runner<'a> {
         self.tell(Progress::Runs(job.title()));
         let mut result = measure(self, job);
         if self.opened_again(&result)? {
-            // Often the point before it is to blame; if it is this one, it fails again.
+            // The previous point is often the cause. If it is this one, it fails again.
             self.tell(Progress::Note(
                 "the device was lost; it is opened again".into(),
             ));
@@ -251,11 +220,11 @@ impl<'a> Runner<'a> {
                 .collect(),
         };
         self.tell(Progress::Finished(job.title(), said));
-        // As the next run will read it: numbers that JSON rounds in the last place are the same in all tables.
+        // Reads the record back, so that rounded numbers are the same in all tables.
         Ok(folder.read(&record.id).unwrap_or(record))
     }
 
-    /// Opens the device again if it was lost.
+    /// Opens a lost device again.
     fn opened_again<T>(&mut self, result: &Result<T, LabError>) -> Result<bool, LabError> {
         let lost = matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_))));
         if lost {
@@ -266,15 +235,12 @@ impl<'a> Runner<'a> {
     }
 }
 
-/// Mistakes, each once: the same one comes back with every combination.
+/// Mistakes without duplicates; every combination repeats them.
 #[derive(Default)]
 pub struct Mistakes(Vec<Diagnostic>);
 
 impl Mistakes {
-    /// Keeps the mistakes of a result; nothing of one that has them.
-    ///
-    /// # Errors
-    /// Errors that are no mistakes of a file.
+    /// Takes a result. `None` if it has mistakes, which are kept.
     pub fn take<T>(&mut self, result: Result<T, LabError>) -> Result<Option<T>, LabError> {
         match result {
             Ok(value) => Ok(Some(value)),
@@ -290,15 +256,11 @@ impl Mistakes {
         }
     }
 
-    /// How many there are.
     pub fn count(&self) -> usize {
         self.0.len()
     }
 
-    /// An error if there are any.
-    ///
-    /// # Errors
-    /// All of them.
+    /// An error with all mistakes, if there are any.
     pub fn none(self) -> Result<(), LabError> {
         if self.0.is_empty() {
             Ok(())

@@ -1,4 +1,4 @@
-//! What a point sets: parameters of the graph, and fields of the experiment.
+//! Settings of a point: parameters of the graph and fields of the experiment.
 
 use crate::diagnostics::{At, Diagnostic, Entries, Loc, RawText};
 use crate::experiment::{Experiment, Field};
@@ -14,7 +14,7 @@ pub struct Setting {
     pub text: String,
 }
 
-/// Settings as they stand in a file.
+/// Settings of a file.
 pub fn settings(list: &Entries<RawText>) -> Vec<Setting> {
     list.0
         .iter()
@@ -22,7 +22,8 @@ pub fn settings(list: &Entries<RawText>) -> Vec<Setting> {
         .collect()
 }
 
-/// Names and values as the lines of a text that stands for a file in messages, and as settings with their places in it.
+/// Names and values as the lines of a text that stands for a file in messages, and as settings with
+/// their places in it.
 pub fn lines<'t>(
     list: impl IntoIterator<Item = (&'t str, &'t str)>,
     between: &str,
@@ -45,8 +46,8 @@ pub fn lines<'t>(
     (text.trim_end_matches('\n').into(), settings)
 }
 
-/// Changes an experiment by settings that stand in the last of its sources; gives their mistakes. Parameters are checked
-/// with their graph.
+/// Applies settings and returns their mistakes. Places refer to the experiment's last source.
+/// Parameters are checked with their graph.
 pub fn apply<'s>(
     experiment: &mut Experiment,
     settings: impl IntoIterator<Item = &'s Setting>,
@@ -68,7 +69,7 @@ pub fn apply<'s>(
     errors
 }
 
-/// Sets parameters that stand in the last of an experiment's sources, whatever their names are.
+/// Sets parameters, even those named like a field. Places refer to the experiment's last source.
 pub fn set_params<'s>(
     experiment: &mut Experiment,
     settings: impl IntoIterator<Item = &'s Setting>,
@@ -83,10 +84,7 @@ fn last_source(experiment: &Experiment) -> u32 {
     u32::try_from(experiment.sources.paths().count().saturating_sub(1)).unwrap_or(0)
 }
 
-/// What an option of the command line names and what it gives it: `NAME=VALUE`, or as `form` says.
-///
-/// # Errors
-/// The text has no name and value.
+/// Splits the text of a command line option into name and value: `NAME=VALUE`, or as `form` says.
 pub fn named<'t>(option: &str, text: &'t str, form: &str) -> Result<(&'t str, &'t str), LabError> {
     let parts = text
         .split_once('=')
@@ -98,11 +96,8 @@ pub fn named<'t>(option: &str, text: &'t str, form: &str) -> Result<(&'t str, &'
 /// A setting, and the values in RON that it is varied over.
 pub type Axis = (String, Vec<String>);
 
-/// What an option of the command line varies: `NAME=VALUE,VALUE`, or as `form` says. Commas inside brackets belong to a
-/// value.
-///
-/// # Errors
-/// The text has no name, or a value is missing.
+/// Splits the text of a command line option into a name and values: `NAME=VALUE,VALUE`, or as
+/// `form` says. Commas inside brackets belong to a value.
 pub fn axis(option: &str, text: &str, form: &str) -> Result<Axis, LabError> {
     let (name, list) = named(option, text, form)?;
     let mut depth = 0;
@@ -120,7 +115,7 @@ pub fn axis(option: &str, text: &str, form: &str) -> Result<Axis, LabError> {
 }
 
 impl Setting {
-    /// Mistakes are shown where the value stands.
+    /// Places of messages are those of the value.
     pub fn new(name: &Loc<String>, value: &Loc<RawText>) -> Setting {
         Setting {
             name: Loc {

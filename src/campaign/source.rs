@@ -5,19 +5,15 @@ use crate::experiment::Experiment;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 
-/// A file that is read, and what is wrong with it.
+/// A file and its mistakes.
 pub struct Source {
     path: PathBuf,
     sources: Sources,
-    /// All mistakes.
     pub errors: Vec<Diagnostic>,
 }
 
 impl Source {
-    /// Reads a file; `help` says what to give instead of one that is not there.
-    ///
-    /// # Errors
-    /// No such file; all mistakes that keep it from being understood.
+    /// Reads a file. `help` suggests a path if there is none.
     pub fn read<T: DeserializeOwned>(
         path: &Path,
         help: &str,
@@ -41,14 +37,12 @@ impl Source {
         }
     }
 
-    /// The file's stem.
     pub fn name(&self) -> String {
         self.path
             .file_stem()
             .map_or(String::new(), |s| s.to_string_lossy().into_owned())
     }
 
-    /// The file's text.
     pub fn text(&self) -> String {
         self.sources
             .texts()
@@ -56,17 +50,16 @@ impl Source {
             .map_or(String::new(), |t| t.1.to_string())
     }
 
-    /// The file's folder: others are looked up in it.
+    /// Folder of the file, for relative paths.
     pub fn folder(&self) -> PathBuf {
         self.path.parent().unwrap_or(Path::new(".")).to_path_buf()
     }
 
-    /// Keeps a mistake.
     pub fn wrong(&mut self, at: At, message: impl Into<String>) {
         self.errors.push(self.sources.error(at, message));
     }
 
-    /// A number of frames, within bounds.
+    /// A number of frames, within limits.
     pub fn frames(
         &mut self,
         value: &Option<Loc<usize>>,
@@ -83,14 +76,15 @@ impl Source {
         }
     }
 
-    /// An experiment that the file names. The file is the last of its sources, so that settings keep their places.
+    /// Reads an experiment that the file names. The file becomes the last of its sources, so that
+    /// settings keep their places.
     pub fn experiment(&mut self, name: &Loc<String>) -> Option<Experiment> {
         match Experiment::read(&self.folder().join(&name.value)) {
             Ok(mut experiment) => {
                 experiment.sources.add(&self.path, self.text());
                 return Some(experiment);
             }
-            // A file that cannot be read is a mistake of this one.
+            // A missing file is a mistake of the file that names it.
             Err(found) if found.iter().all(|d| d.place.line == 0) => {
                 for d in found {
                     let message = format!("{}: {}", d.place.file.display(), d.message);

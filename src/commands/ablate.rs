@@ -19,7 +19,8 @@ use std::path::PathBuf;
 pub struct AblateArgs {
     #[command(flatten)]
     experiment: ExperimentArgs,
-    /// Scenes to measure in: built-in names, scene RONs or model files; the experiment's own when absent.
+    /// Scenes to measure in: built-in names, scene RONs or model files; the experiment's own when
+    /// absent.
     #[arg(long, value_name = "SCENE,...", value_delimiter = ',', conflicts_with_all = ["scene", "steps"])]
     scenes: Vec<String>,
     /// Change only these parameters; all that have a plain value when absent.
@@ -30,16 +31,18 @@ pub struct AblateArgs {
         conflicts_with = "steps"
     )]
     only: Vec<String>,
-    /// Runs of the experiment as it is, whose spread is the noise of times.
+    /// Runs of the unchanged experiment. Their spread is the noise of times.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(2..=100), conflicts_with = "steps")]
     runs: u32,
     /// Frames before those that are timed; on a GPU more, until it has worked for 100 ms.
     #[arg(long, default_value_t = 10, conflicts_with = "steps")]
     warmup: usize,
-    /// Where everything is kept; captures/ablations/NAME when absent. What is finished there is not measured again.
+    /// Folder of the results; captures/ablations/NAME when absent. Finished points in it are not
+    /// measured again.
     #[arg(short, long, value_name = "FOLDER", conflicts_with = "steps")]
     output: Option<PathBuf>,
-    /// Run the graph's own steps from an ideal to the method instead, and print what each adds to the error.
+    /// Run the graph's own steps from an ideal to the method instead, and print what each adds to
+    /// the error.
     #[arg(long)]
     steps: bool,
     /// Samples of every pixel of the references, if more are needed than are there.
@@ -48,7 +51,8 @@ pub struct AblateArgs {
     /// Bounces of the references.
     #[arg(long, default_value_t = ALL_BOUNCES)]
     bounces: u32,
-    /// Frames that are timed, 50 when absent; of each step as many as it takes to settle.
+    /// Frames to time; 50 when absent. With --steps, frames of each step; as many as it needs to
+    /// converge when absent.
     #[arg(long)]
     frames: Option<usize>,
     /// With --steps: write the numbers to this JSON file.
@@ -61,7 +65,7 @@ pub struct AblateArgs {
     device: DeviceArgs,
 }
 
-/// Tells what each parameter of an experiment is worth, or what each step of its graph adds to its error.
+/// Prints the effect of each parameter, or the error that each step of the graph's ablation adds.
 pub fn run(args: &AblateArgs) -> Result<(), LabError> {
     if args.steps {
         steps::run(args)

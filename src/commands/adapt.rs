@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// An experiment, and what is different this time.
+/// An experiment with changes.
 #[derive(Debug, Args)]
 pub struct ExperimentArgs {
     /// Experiment file, for example configs/rays.ron.
@@ -18,13 +18,14 @@ pub struct ExperimentArgs {
     changes: Changes,
 }
 
-/// What the command line changes of an experiment.
+/// Changes of the command line to an experiment.
 #[derive(Clone, Debug, Args)]
 pub struct Changes {
     /// Another scene: a built-in name, a scene RON, or a model file.
     #[arg(long, value_parser = super::spec())]
     scene: Option<String>,
-    /// Another camera of the scene, or one written out: "(eye: (0, 1, 5), target: (0, 1, 0), fov_y: 60)".
+    /// Another camera of the scene, or one written out: "(eye: (0, 1, 5), target: (0, 1, 0), fov_y:
+    /// 60)".
     #[arg(long)]
     camera: Option<String>,
     /// Picture size.
@@ -175,7 +176,7 @@ pub fn parse_resource(text: &str) -> Result<(String, u32, u32), LabError> {
 /// Most frames of one run.
 const MAX_FRAMES: usize = 1_000_000;
 
-/// Whether so many frames can be run, and so far apart.
+/// Checks the number of frames and the step between them.
 pub fn check_frames(frames: usize, warmup: usize, step: f64) -> Result<(), LabError> {
     if !step.is_finite() {
         return Err(LabError::Request(

@@ -30,13 +30,15 @@ pub struct BenchArgs {
     /// Another scene: a built-in name, a scene RON, or a model file.
     #[arg(long)]
     scene: Option<String>,
-    /// Picture sizes: 720p, 900p, 1080p, 1440p, 2160p or WIDTHxHEIGHT; the experiments' own when absent.
+    /// Picture sizes: 720p, 900p, 1080p, 1440p, 2160p or WIDTHxHEIGHT; the experiments' own when
+    /// absent.
     #[arg(long, value_delimiter = ',')]
     sizes: Vec<String>,
     /// Set a parameter in every configuration; may be given many times.
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<String>,
-    /// A setting and its values; may be given many times. The first makes the columns of the tables.
+    /// A setting and its values; may be given many times. The first makes the columns of the
+    /// tables.
     #[arg(long, value_name = "NAME=V1,V2")]
     axis: Vec<String>,
     /// How often every configuration has its turn; 5 or as recorded when absent.
@@ -45,13 +47,15 @@ pub struct BenchArgs {
     /// Frames of every turn; 40 or as recorded when absent.
     #[arg(long)]
     frames: Option<usize>,
-    /// Frames before those of every turn; on a GPU more, until it has worked for 100 ms. 10 or as recorded when absent.
+    /// Frames before those of every turn; on a GPU more, until it has worked for 100 ms. 10 or as
+    /// recorded when absent.
     #[arg(long)]
     warmup: Option<usize>,
     /// Record the times of this device: a .json file, or a folder with one file for each device.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Measure again what was recorded on this device, and compare; exit 1 if a stage became slower.
+    /// Measure the configurations of this record again, and compare; exit 1 if a stage became
+    /// slower.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "sizes", "set", "axis", "record"])]
     against: Option<PathBuf>,
     /// How much slower a stage may be, as a part of the recorded time.
@@ -64,7 +68,7 @@ pub struct BenchArgs {
     device: DeviceArgs,
 }
 
-/// Rounds and frames when nothing is said.
+/// Default rounds and frames.
 const ROUNDS: usize = 5;
 const FRAMES: Frames = Frames {
     warmup: 10,
@@ -84,7 +88,7 @@ pub fn run(args: &BenchArgs) -> Result<(), LabError> {
     }
 }
 
-/// What the command line asks for.
+/// Measures the configurations of the command line.
 fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
     let (rounds, frames) = counts(args, ROUNDS, FRAMES)?;
     let sweep = sweep_of(args, frames)?;
@@ -126,7 +130,7 @@ fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
     Ok(())
 }
 
-/// What a record of this device holds.
+/// Measures the configurations of a record of this device.
 fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
     let (home, mut bar) = (Workspace::find()?, bar("turns "));
     let open = || Lab::open(home.clone(), args.device.options());
@@ -220,7 +224,7 @@ fn counts(args: &BenchArgs, rounds: usize, frames: Frames) -> Result<(usize, Fra
     Ok((rounds, frames))
 }
 
-/// Every experiment with every combination of what the command line varies.
+/// Every experiment with every combination of varied settings.
 fn sweep_of(args: &BenchArgs, frames: Frames) -> Result<Sweep, LabError> {
     let mut experiments = Vec::new();
     for path in &args.experiments {
@@ -244,7 +248,7 @@ fn sweep_of(args: &BenchArgs, frames: Frames) -> Result<Sweep, LabError> {
     Sweep::of(experiments, &axes, frames)
 }
 
-/// The configurations of a record whose experiments the command line names; all if it names none.
+/// The configurations of a record for the experiments of the command line; all without any.
 fn chosen<'r>(
     args: &BenchArgs,
     home: &Workspace,

@@ -4,7 +4,7 @@ use crate::campaign::record::first_line;
 use crate::campaign::runner::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Shows progress; `points` is what the points are called.
+/// Shows progress; `points` is the noun for the points.
 pub fn bar(points: &str) -> impl FnMut(Progress) {
     let bar = ProgressBar::new(0).with_style(
         ProgressStyle::with_template("{pos}/{len} {bar:30} {elapsed} so far, {eta} left {msg}")

@@ -14,13 +14,15 @@ use std::sync::Arc;
 pub struct CaptureArgs {
     #[command(flatten)]
     experiment: ExperimentArgs,
-    /// Name of the capture. Without it: the experiment's name, with a number if another capture has that name.
+    /// Name of the capture. Without it: the experiment's name, with a number if another capture has
+    /// that name.
     #[arg(long)]
     name: Option<String>,
     /// Keep this texture too; may be given many times.
     #[arg(long, value_name = "NAME[:MIP[:LAYER]]")]
     resource: Vec<String>,
-    /// Frames to run, of which the last is kept; as many as the graph takes to settle when absent, or one with --step.
+    /// Frames to run; the last is captured. When absent: the frames that the graph needs to
+    /// converge, or one with --step.
     #[arg(long)]
     frames: Option<usize>,
     /// Time from frame to frame, s.

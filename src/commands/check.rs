@@ -22,7 +22,7 @@ pub struct CheckArgs {
     files: Vec<PathBuf>,
 }
 
-/// What a RON file is.
+/// Kind of a RON file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
     /// A pass graph.
@@ -44,8 +44,9 @@ pub enum FileKind {
 /// RON files larger than this are refused, whatever they are.
 const MAX_BYTES: u64 = 4 << 20;
 
-/// What a file is, by the names of its first fields: experiments name a graph, scenes hold models or lights,
-/// camera paths hold keys, sweeps name experiments, suites of stability name methods. Recorded times end in `.json`.
+/// The kind of a file, by the names of its first fields: experiments name a graph, scenes have
+/// models or lights, camera paths have keys, sweeps name experiments, suites of stability name
+/// methods. Recorded times end in `.json`.
 pub fn kind(path: &Path) -> FileKind {
     if path.extension().is_some_and(|e| e == "json") {
         return FileKind::Times;
@@ -88,7 +89,8 @@ fn files_of(folder: &Path, ending: &str) -> Vec<PathBuf> {
     list
 }
 
-/// The program's own files. What graphs include is checked there, where it has no picture of its own.
+/// The program's own files. What graphs include is checked there, where it has no picture of its
+/// own.
 fn own_files(home: &Workspace) -> Vec<PathBuf> {
     let graphs = files_of(&home.root.join("passes"), "ron");
     let (mut included, mut whole): (Vec<PathBuf>, Vec<PathBuf>) = (Vec::new(), Vec::new());
@@ -151,7 +153,8 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
         };
         let findings = match checked {
             Ok(findings) | Err(LabError::Input(findings)) => findings,
-            // Models are no part of the program; asked for by name, they must be there.
+            // Models are not part of the repository. A model that the command line names must
+            // exist.
             Err(LabError::Scene(SceneError::NoModel { message, .. })) if all => {
                 say!("{}: not checked: {message}", file.display());
                 Vec::new()
@@ -189,7 +192,7 @@ fn check_graph(home: &Workspace, name: &str) -> Vec<Diagnostic> {
     findings
 }
 
-/// Everything that would keep an experiment from being rendered, except the device. `scenes` holds those opened so far.
+/// Checks an experiment without a device. `scenes` caches the opened scenes.
 fn check_experiment(
     home: &Workspace,
     file: &Path,

@@ -19,12 +19,13 @@ use std::path::{Path, PathBuf};
 /// Arguments of `compare`.
 #[derive(Debug, Args)]
 pub struct CompareArgs {
-    /// A picture (.exr, .hdr, .png), an experiment (.ron), which is rendered, or the folder of a capture.
+    /// A picture (.exr, .hdr, .png), an experiment (.ron), which is rendered, or the folder of a
+    /// capture.
     a: PathBuf,
     /// Another; the reference of A when there is no other reference.
     b: Option<PathBuf>,
-    /// What both are compared with: a picture, an experiment, a capture, `auto` for the cached reference of A where A is an
-    /// experiment and has one, or `none`.
+    /// What both are compared with: a picture, an experiment, a capture, `auto` for the cached
+    /// reference of A where A is an experiment and has one, or `none`.
     #[arg(long, default_value = "auto")]
     reference: PathBuf,
     /// Bounces of the cached reference: all that matter unless given; then it must be there.
@@ -36,7 +37,8 @@ pub struct CompareArgs {
     /// Score the light pixels of this picture apart; may be given many times.
     #[arg(long, value_name = "NAME=FILE")]
     mask: Vec<String>,
-    /// Frames of an experiment to run, of which the last is compared; as many as its graph takes to settle when absent.
+    /// Frames of an experiment to run; the last is compared. When absent: the frames that its graph
+    /// needs to converge.
     #[arg(long)]
     frames: Option<usize>,
     /// Write everything to this JSON file.
@@ -66,7 +68,7 @@ pub fn run(args: &CompareArgs) -> Result<(), LabError> {
     let a = sources.side(&args.a, true)?;
     let b = args.b.as_ref().map(|b| sources.side(b, true)).transpose()?;
     let given = match args.reference.to_str() {
-        // Beside a picture from elsewhere, an experiment is what it is compared with.
+        // An experiment is the reference of a picture from another program.
         Some("auto") if args.a.extension().is_some_and(|e| e == "ron") => {
             sources.cached(args.bounces.unwrap_or(ALL_BOUNCES))?
         }
@@ -102,7 +104,7 @@ pub fn run(args: &CompareArgs) -> Result<(), LabError> {
     sources.validated()
 }
 
-/// Who is compared with whom; without a reference, A is compared with B.
+/// The compared sides and the reference. Without a reference, A is compared with B.
 fn roles(a: Side, b: Option<Side>, reference: Option<Side>) -> Result<(Vec<Side>, Side), LabError> {
     match (b, reference) {
         (b, Some(reference)) => Ok((std::iter::once(a).chain(b).collect(), reference)),

@@ -39,8 +39,8 @@ pub struct FitArgs {
     /// Part of the light that is compared.
     #[arg(long, default_value = "total")]
     part: String,
-    /// Vary this parameter over these values, neighbours alike; may be given many times. The graph's own list when
-    /// absent.
+    /// Vary this parameter over these values, neighbours alike; may be given many times. The
+    /// graph's own list when absent.
     #[arg(long, value_name = "NAME=VALUE,VALUE")]
     vary: Vec<String>,
     /// Most settings to try.
@@ -58,8 +58,8 @@ pub struct FitArgs {
     /// Turns of the reference's paths.
     #[arg(long, default_value_t = ALL_BOUNCES)]
     bounces: u32,
-    /// The experiment to write; captures/fit/NAME.ron when absent. What was tried is kept in a folder
-    /// beside it, as points of a sweep: a search that was stopped goes on there.
+    /// The experiment to write; captures/fit/NAME.ron when absent. A folder next to it has all
+    /// trials as points of a sweep, so that a stopped search can be continued.
     #[arg(short, long)]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -134,7 +134,7 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
         &super::open_scene,
         &request,
         &mut |progress| match progress {
-            // What is wrong with a setting stands in its line.
+            // Warnings of a setting are in its line.
             Progress::Finished(what, _) => bar(Progress::Finished(what, Vec::new())),
             other => bar(other),
         },
@@ -164,7 +164,7 @@ fn why(stop: Stop) -> &'static str {
     }
 }
 
-/// What the search has found, for people.
+/// The printed result of a search.
 fn summary(found: &Found, args: &FitArgs, goal: Goal, axes: &[Axis]) -> Vec<String> {
     let (ms, error) = goal.time_and_error(found.trial);
     let metric = args.metric.axis();

@@ -18,7 +18,7 @@ pub struct GraphArgs {
     /// Graph file (passes/rays.ron) or experiment (configs/rays.ron).
     #[arg(value_parser = super::spec())]
     file: String,
-    /// The scene whose counts decide repetitions.
+    /// The scene that sets the counts of repeated passes.
     #[arg(long, value_parser = super::spec())]
     scene: Option<String>,
     /// Picture size; the experiment's, or 1280x720, when absent.
@@ -33,7 +33,8 @@ pub struct GraphArgs {
     /// Print the parameters with their ranges and help, and the named values as set.
     #[arg(long)]
     params: bool,
-    /// Print every step with its reads, writes and barriers, all resources, and why other passes do not run.
+    /// Print every step with its reads, writes and barriers, all resources, and why other passes do
+    /// not run.
     #[arg(long)]
     barriers: bool,
     /// Print a Graphviz picture.

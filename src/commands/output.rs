@@ -1,4 +1,5 @@
-//! What commands print. An error of standard output is an error of the command, unless its reader has gone away.
+//! What commands print. An error of standard output is an error of the command, unless its reader
+//! has gone away.
 
 use crate::diagnostics::excerpt::harmless;
 use crate::lab::LabError;
@@ -11,10 +12,11 @@ use std::sync::{Mutex, PoisonError};
 /// The first error of standard output.
 static FAILED: Mutex<Option<Error>> = Mutex::new(None);
 
-/// Whether standard output is for JSON: what is said to people goes to standard error.
+/// Whether standard output has JSON only, and messages go to standard error.
 static JSON_ALONE: AtomicBool = AtomicBool::new(false);
 
-/// Prints for people. Names in a scene's file may hold escape sequences, which a terminal must not obey.
+/// Prints for people. Names in a scene's file may hold escape sequences, which a terminal must not
+/// obey.
 pub fn put(text: Arguments) {
     let text = harmless(&text.to_string());
     match JSON_ALONE.load(Relaxed) {
@@ -33,9 +35,6 @@ fn keep(result: Result<(), Error>) {
 }
 
 /// Whether everything has reached standard output.
-///
-/// # Errors
-/// A full disk, a closed output; not a reader that has gone away.
 pub fn written() -> Result<(), LabError> {
     keep(std::io::stdout().flush());
     match FAILED.lock().unwrap_or_else(PoisonError::into_inner).take() {
@@ -56,9 +55,6 @@ pub fn is_json_output(path: &Path) -> bool {
 }
 
 /// Writes what `--json` asks for, to a file or to standard output.
-///
-/// # Errors
-/// A file that cannot be written.
 pub fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), LabError> {
     let text = serde_json::to_string_pretty(value).map_err(LabError::making("JSON"))?;
     if is_json_output(path) {

@@ -15,14 +15,16 @@ use std::sync::Arc;
 pub struct ReferenceArgs {
     #[command(flatten)]
     experiment: ExperimentArgs,
-    /// Samples of every pixel, in all; rounded up to a multiple of 32. 256 when neither this nor --until is given.
+    /// Samples of every pixel, in all; rounded up to a multiple of 32. 256 when neither this nor
+    /// --until is given.
     #[arg(long, value_name = "N", conflicts_with = "until")]
     spp: Option<u64>,
-    /// Go on until the total's relMSE against the converged reference, estimated from two halves of the samples, is at
-    /// most this.
+    /// Go on until the total's relMSE against the converged reference, estimated from two halves of
+    /// the samples, is at most this.
     #[arg(long, value_name = "RELMSE")]
     until: Option<f64>,
-    /// Turns of a path behind the first surface: all that matter when absent; 1 is what cones gather of one bounce.
+    /// Turns of a path behind the first surface: all that matter when absent; 1 is what cones
+    /// gather of one bounce.
     #[arg(long, default_value_t = ALL_BOUNCES)]
     bounces: u32,
     /// Write the mean of a part to this file too (.exr).
@@ -35,7 +37,7 @@ pub struct ReferenceArgs {
     device: DeviceArgs,
 }
 
-/// Samples when nothing is said.
+/// Default samples per pixel.
 const DEFAULT_SAMPLES: u64 = 256;
 
 /// Gathers a reference.
@@ -110,7 +112,7 @@ pub fn with_bar(
             bar.set_length(now.goal);
             bar.set_message(format!("relMSE {:.2e}", now.noise));
             if first {
-                // What an earlier run gathered says nothing about this one's speed.
+                // Samples of an earlier run do not count for the speed.
                 bar.set_position(now.samples);
                 bar.reset_eta();
                 first = false;

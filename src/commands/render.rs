@@ -24,10 +24,12 @@ pub struct RenderArgs {
     /// Frames to run and time; 1 when absent.
     #[arg(long)]
     frames: Option<usize>,
-    /// Frames to run before timing starts. Where neither is given: as many as a graph that gathers over frames takes to settle.
+    /// Frames to run before timing starts. When absent: the frames that the graph needs to
+    /// converge.
     #[arg(long)]
     warmup: Option<usize>,
-    /// Whether each frame does all, or only passes whose outcome changes; pictures are the same, to the bit.
+    /// Whether a frame runs all passes, or only those with changed inputs. Pictures are
+    /// bit-identical.
     #[arg(long, value_enum, default_value_t)]
     execution: Execution,
     /// Move the camera along this path (configs/paths) by each frame's time.
@@ -48,7 +50,8 @@ pub struct RenderArgs {
     /// Draw the GPU's times onto the pictures (.png): of the graph's stages, or of every pass.
     #[arg(long, value_enum, value_name = "ROWS")]
     timers: Option<Rows>,
-    /// Write timings and settings to this JSON file; `-`: to standard output, and nothing else there.
+    /// Write timings and settings to this JSON file; `-`: to standard output, and nothing else
+    /// there.
     #[arg(long)]
     json: Option<PathBuf>,
     #[command(flatten)]
@@ -195,7 +198,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     super::validated(&lab)
 }
 
-/// Told where texels are no numbers.
+/// A warning about texels that are not finite.
 fn not_finite(texels: &Texels, name: &str) -> Option<String> {
     let count = texels
         .floats()

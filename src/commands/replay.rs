@@ -24,7 +24,7 @@ pub struct ReplayArgs {
 /// A replay of more frames than this prints their number first.
 const MANY_FRAMES: usize = 100;
 
-/// Renders a capture again and says what differs.
+/// Renders a capture again and prints the differences.
 pub fn run(args: &ReplayArgs) -> Result<(), LabError> {
     let manifest = Manifest::read(&args.capture)?;
     let frames = manifest.frames;
@@ -41,7 +41,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), LabError> {
             manifest.size[0], manifest.size[1]
         );
     }
-    // Told first: what has changed in the folder may be why it cannot be rendered.
+    // Printed first: a changed folder may be the reason of an error.
     for change in changes(&args.capture, &manifest) {
         say!("{change}");
     }

@@ -19,7 +19,7 @@ pub struct SaveArgs {
     overwrite: bool,
 }
 
-/// Saves an experiment with what the command line changes.
+/// Saves an experiment with the changes of the command line.
 pub fn run(args: &SaveArgs) -> Result<(), LabError> {
     let name = checked_name(&args.name)?;
     let experiment = args.experiment.read()?;

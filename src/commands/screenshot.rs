@@ -32,18 +32,19 @@ pub struct ScreenshotArgs {
     /// Click on the widget with this label, or at X,Y; may be given many times.
     #[arg(long, value_name = "LABEL")]
     click: Vec<String>,
-    /// Measure so many frames of the interface and print what they cost.
+    /// Measure this number of frames of the interface and print their times.
     #[arg(long, default_value_t = 0)]
     measure: usize,
-    /// Measure how the interface keeps pace with the engine over so many of its pictures; the engine must be kept rendering
-    /// (`--click "keep rendering"` in the tab Time).
+    /// Measure the pace of the interface over this number of the engine's pictures. The engine must
+    /// keep rendering (`--click "keep rendering"` in the tab Time).
     #[arg(long, value_name = "PICTURES", default_value_t = 0)]
     pace: usize,
-    /// Milliseconds between the interface's frames while its pace is measured, as a screen has it; as soon as there is a new
-    /// picture when absent.
+    /// Milliseconds between the interface's frames while its pace is measured, as a screen has it;
+    /// as soon as there is a new picture when absent.
     #[arg(long, value_name = "MS", requires = "pace")]
     every: Option<f64>,
-    /// Measure how long a saved edit of this file takes until its picture is painted; the file ends as it was.
+    /// Measure how long a saved edit of this file takes until its picture is painted; the file ends
+    /// as it was.
     #[arg(long, value_name = "FILE", requires_all = ["from", "to"])]
     edit: Option<PathBuf>,
     /// A text that stands once in the edited file.

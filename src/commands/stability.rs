@@ -18,10 +18,11 @@ use std::path::PathBuf;
 pub struct StabilityArgs {
     /// Suite file, for example configs/stability/motion.ron.
     suite: PathBuf,
-    /// Where everything is kept; captures/stability/NAME when absent. What is finished there is not measured again.
+    /// Folder of the results; captures/stability/NAME when absent. Finished cases in it are not
+    /// measured again.
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
-    /// Set a parameter of every method whose graph has it; may be given many times.
+    /// Set a parameter of every method with a graph that has it; can be repeated.
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<String>,
     /// Picture size, instead of the suite's.
@@ -30,10 +31,11 @@ pub struct StabilityArgs {
     /// Frames of the cases that do not say themselves, instead of the suite's.
     #[arg(long)]
     frames: Option<usize>,
-    /// Samples a pixel of every frame's reference, instead of the suite's; rounded up to a multiple of 32.
+    /// Samples a pixel of every frame's reference, instead of the suite's; rounded up to a multiple
+    /// of 32.
     #[arg(long, value_name = "SAMPLES")]
     spp: Option<u64>,
-    /// Trace no references: only what stands still is scored.
+    /// Trace no references: only static cases are scored.
     #[arg(long)]
     no_reference: bool,
     /// Only these cases.

@@ -14,7 +14,8 @@ use std::path::PathBuf;
 pub struct SweepArgs {
     /// Sweep file, for example configs/sweeps/cones.ron.
     sweep: PathBuf,
-    /// Where points are kept; captures/sweeps/NAME when absent. What is finished there is not measured again.
+    /// Folder of the points; captures/sweeps/NAME when absent. Finished points in it are not
+    /// measured again.
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
     /// Measure only every N-th point from the I-th on, so that several machines share the work.
@@ -23,11 +24,12 @@ pub struct SweepArgs {
     /// Frames of every point, instead of the file's.
     #[arg(long)]
     frames: Option<usize>,
-    /// Frames before those of every point, instead of the file's; on a GPU more, until it has worked for 100 ms.
+    /// Frames before those of every point, instead of the file's; on a GPU more, until it has
+    /// worked for 100 ms.
     #[arg(long)]
     warmup: Option<usize>,
-    /// Gather the references of the points to this many samples a pixel first; those that are cached are used as they
-    /// are when absent.
+    /// Gather the references of the points to this many samples a pixel first; those that are
+    /// cached are used as they are when absent.
     #[arg(long, value_name = "SAMPLES")]
     reference: Option<u64>,
     /// Measure points again that have failed.

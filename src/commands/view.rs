@@ -20,7 +20,7 @@ pub struct ViewArgs {
     /// Size of the picture in pixels; that of the viewport when absent.
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
-    /// Whether each frame does all, or only passes whose outcome changes.
+    /// Whether a frame runs all passes, or only those with changed inputs.
     #[arg(long, value_enum, default_value_t)]
     execution: Execution,
     /// Size of the window.

@@ -25,7 +25,8 @@ pub struct VoxelsArgs {
     /// Write the figures to this JSON file.
     #[arg(long)]
     json: Option<PathBuf>,
-    /// Write cubes to this folder, for each mode a picture and a model (.glb): holes red, extras blue, right ones grey.
+    /// Write cubes to this folder, for each mode a picture and a model (.glb): holes red, extras
+    /// blue, right ones grey.
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -43,7 +44,7 @@ struct Mode {
     set: Settings,
     score: Option<Score>,
     skipped: Option<String>,
-    /// What the graph's checks said, such as full lists.
+    /// Failed checks of the graph, such as full queues.
     warnings: Vec<String>,
 }
 
@@ -167,7 +168,7 @@ fn modes_of(loaded: &Loaded, all: bool) -> Result<Vec<(String, Settings)>, LabEr
     Ok(modes)
 }
 
-/// The voxels of one frame, where they lie, and what the graph's checks said.
+/// The voxels of one frame, their grid, and failed checks of the graph.
 fn voxels_of(
     lab: &Lab,
     experiment: &Experiment,

@@ -1,4 +1,4 @@
-//! Which parameters have a plain value that the experiment does not have already.
+//! Parameters with a plain value that the experiment does not have.
 
 use crate::diagnostics::nearest;
 use crate::graph::param::{Param, Params, Value};
@@ -7,7 +7,7 @@ use crate::lab::LabError;
 /// A parameter at its plain value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
-    /// The parameter.
+    /// Name of the parameter.
     pub name: String,
     /// Its value in the experiment.
     pub from: Value,
@@ -22,10 +22,8 @@ impl Change {
     }
 }
 
-/// The changes that an experiment's parameters offer, in the graph's order; of these names alone where there are any.
-///
-/// # Errors
-/// A name that is no parameter, or offers no change; no change at all.
+/// Changes to the experiment's parameters, in the graph's order. `only` restricts them to these
+/// names if it has any.
 pub fn changes(params: &Params, only: &[String]) -> Result<Vec<Change>, LabError> {
     let all: Vec<Change> = params
         .list
@@ -76,8 +74,8 @@ fn change(param: &Param, value: &Value) -> Option<Change> {
     })
 }
 
-/// Whether a number lies beyond the plain one, seen from the default where the parameter is declared: a grid of 64 where
-/// 160 is usual and 128 plain.
+/// Whether the experiment's value lies beyond the plain one, as seen from the default. Example: 64
+/// if 160 is the default and 128 is plain.
 fn is_plainer(param: &Param, value: &Value, plain: &Value) -> bool {
     let (Some(value), Some(plain), Some(usual)) =
         (value.number(), plain.number(), param.declared.number())

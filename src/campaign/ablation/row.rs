@@ -1,4 +1,4 @@
-//! What a parameter's plain value changes, over the scenes, and what follows from it.
+//! Effect of each parameter's plain value over the scenes, with a verdict.
 
 use super::Change;
 use crate::campaign::record::{Outcome, first_line};
@@ -10,14 +10,14 @@ use std::collections::HashMap;
 use std::fmt;
 use std::path::PathBuf;
 
-/// Changes by a smaller part are none, however little noise there is.
+/// Smaller relative changes do not count, even without noise.
 const LEAST: f64 = 0.01;
 
-/// How a quantity grows with the plain value, as a part of what it is in the experiment, so that scenes count alike; of
-/// the energy's error, which is relative already and may be next to nothing, the difference.
+/// Relative growth of a quantity with the plain value, so that all scenes count alike. The energy
+/// error is relative already and may be near 0, so its growth is a difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Delta {
-    /// What it is in the experiment, in its own unit, mean over the scenes.
+    /// Mean over the scenes in the unchanged experiment, in the unit of the quantity.
     pub unchanged: f64,
     /// Mean growth over the scenes.
     pub change: f64,
@@ -27,7 +27,6 @@ pub struct Delta {
     pub worst: f64,
     /// Growth in that scene up to this is none.
     pub worst_noise: f64,
-    /// That scene.
     pub worst_scene: String,
 }
 
@@ -38,45 +37,39 @@ pub struct ErrorChange {
     pub part: String,
     /// Metric; of the energy ratio the error is its absolute logarithm.
     pub metric: &'static Metric,
-    /// By how much.
     pub delta: Delta,
 }
 
-/// A parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// What was changed.
     pub change: Change,
-    /// GPU time of a frame, ms; nothing on a device without timestamps.
+    /// GPU time of a frame, ms. `None` on a device without timestamps.
     pub ms: Option<Delta>,
-    /// Device memory of the graph, bytes; nothing where it could be measured in no scene.
+    /// Device memory of the graph, bytes. `None` if no scene has it.
     pub bytes: Option<Delta>,
-    /// By part and metric, those that have numbers.
+    /// Errors by part and metric, without those that are not finite.
     pub errors: Vec<ErrorChange>,
-    /// What the experiment's value is worth.
     pub verdict: Verdict,
-    /// Scenes without a result, and why.
+    /// Scenes without a result, with the reason.
     pub failed: Vec<(String, String)>,
 }
 
-/// What the experiment's value is worth beside the plain one.
+/// Verdict on the experiment's value against the plain value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Without it errors grow, and it costs time or memory.
+    /// Errors grow without it, and it costs time or memory.
     Pays,
-    /// Without it errors grow, and it costs nothing.
+    /// Errors grow without it, and it costs nothing.
     Free,
-    /// It costs time or memory, and no error is smaller for it.
+    /// It costs time or memory, and reduces no error.
     DoesNotPay,
-    /// Without it some errors grow and others fall.
+    /// Some errors grow without it and others fall.
     Mixed,
-    /// Nothing changes.
     NoEffect,
-    /// It costs less than the plain value, and no error is larger for it.
+    /// It costs less than the plain value, and increases no error.
     Cheaper,
     /// The plain value costs more and has smaller errors.
     PlainPays,
-    /// Not measured.
     Failed,
 }
 
@@ -104,7 +97,7 @@ struct Sample {
 }
 
 impl Sample {
-    /// Of a quantity whose changes up to `noise`, in its unit, are none.
+    /// Relative change of a quantity. Changes up to `noise`, in its unit, count as 0.
     fn relative(unchanged: f64, changed: f64, noise: f64) -> Sample {
         Sample {
             unchanged,
@@ -124,7 +117,7 @@ impl Delta {
         let mean = |of: fn(&Sample) -> f64| {
             finite.iter().map(|s| of(&s.1)).sum::<f64>() / finite.len() as f64
         };
-        // The noise of one scene knows nothing of another's: squares add up. What is too small to count is not noise.
+        // Noise is independent between scenes, so squares add up. Negligible changes are not noise.
         let independent = (mean(|s| s.noise * s.noise) / finite.len() as f64).sqrt();
         Some(Delta {
             unchanged: mean(|s| s.unchanged),
@@ -142,14 +135,11 @@ impl Delta {
     }
 }
 
-/// Points by scene and by what was set.
+/// Points by scene and setting.
 type Points = HashMap<(String, String), Result<Point, String>>;
 
-/// A row for each change, with errors of these parts of the light. `folders`: the sweep of all changes, then those that
-/// repeat the unchanged experiment.
-///
-/// # Errors
-/// Folders that are none of sweeps.
+/// A row for each change, with errors of these parts of the light. `folders`: the sweep of all
+/// changes, then those that repeat the unchanged experiment.
 pub fn rows(
     folders: &[PathBuf],
     scenes: &[String],
@@ -252,7 +242,8 @@ fn error(before: &Point, after: &Point, part: &str, metric: &Metric) -> Option<S
         Some(metric.distance(p.scores.get(part)?.get(metric.key))).filter(|v| !v.is_nan())
     };
     let (unchanged, changed) = (value(before)?, value(after)?);
-    // What the reference's noise gives a picture without error. It is in both numbers: a change is known far better.
+    // Noise of the reference gives a perfect picture this error. Both numbers contain it, so a
+    // change is known far better.
     let known = metric
         .noise
         .as_ref()
@@ -267,7 +258,7 @@ fn error(before: &Point, after: &Point, part: &str, metric: &Metric) -> Option<S
     })
 }
 
-/// Against the mean of the unchanged experiment's runs, whose spread is the noise.
+/// Compares with the mean of the unchanged runs. Their spread is the noise.
 fn time(before: &[&Point], after: &Point) -> Sample {
     let ms = |p: &Point| p.stats.total_gpu_ms.median;
     let runs = || before.iter().map(|p| ms(p));

@@ -54,7 +54,8 @@ fn verdicts(rows: &[Row]) -> String {
     table.markdown()
 }
 
-/// Mean and worst change of each metric of a part. The titles have the values of the unchanged experiment.
+/// Mean and worst change of each metric of a part. The titles have the values of the unchanged
+/// experiment.
 fn errors(rows: &[Row], part: &str) -> Option<String> {
     let delta = |row: &Row, metric: &Metric| {
         row.errors
@@ -81,7 +82,7 @@ fn errors(rows: &[Row], part: &str) -> Option<String> {
     (!metrics.is_empty()).then(|| table.markdown())
 }
 
-/// What is not told from noise stands in brackets.
+/// The change, in brackets if it does not exceed the noise.
 fn growth(metric: &Metric, change: f64, noise: f64) -> String {
     match metric.best {
         Best::One => told(format!("{change:+.4}"), change, noise),
@@ -108,10 +109,8 @@ fn noise(metric: &Metric, noise: f64) -> String {
     }
 }
 
-/// Comma-separated values (RFC 4180): for each parameter a line for its time, its memory and each error.
-///
-/// # Errors
-/// Writing to memory gives none.
+/// Comma-separated values (RFC 4180): for each parameter a line for its time, its memory and each
+/// error.
 pub fn csv(rows: &[Row]) -> Result<String, LabError> {
     let mut lines: Vec<(&Row, &str, &str, &Delta)> = Vec::new();
     for row in rows {

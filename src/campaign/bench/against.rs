@@ -1,8 +1,8 @@
-//! A benchmark against a recorded one: what became slower.
+//! Comparison of a benchmark with recorded times.
 //!
-//! Other programs, heat and waking clocks only ever add time, so the least of the rounds' medians says best what a stage
-//! costs, and it is what is compared. Timestamps of very short stages jitter by more than a tenth of them, so a stage
-//! must also lose [`FLOOR_MS`]; and where recorded rounds scatter, its best round must be beyond the recorded middle.
+//! Other programs, heat and rising clocks only add time. So the minimum of the rounds' medians is
+//! compared. Timestamps of very short stages jitter by more than a tenth, so a stage must also lose
+//! [`FLOOR_MS`]. If recorded rounds scatter, its best round must exceed the recorded median.
 
 use super::record::{Record, Recorded, plain};
 use super::{Bench, Times};
@@ -10,7 +10,7 @@ use crate::results::stats::{DeviceStats, spread};
 use crate::results::table::Table;
 use std::fmt::Write;
 
-/// What a stage must lose or win to count, ms.
+/// Smallest change of a stage that counts, ms.
 pub const FLOOR_MS: f64 = 0.02;
 
 /// Most settings that are named one by one.
@@ -21,11 +21,11 @@ const MAX_NAMED: usize = 8;
 pub enum Verdict {
     /// Within the tolerance.
     Same,
-    /// Beyond it.
+    /// Slower by more than the tolerance.
     Slower,
-    /// As far beyond it on the good side.
+    /// Faster by more than the tolerance.
     Faster,
-    /// Beyond it, but so were half of the recorded rounds.
+    /// Slower by more than the tolerance, but so were half of the recorded rounds.
     Noisy,
     /// Not in the record.
     New,
@@ -46,18 +46,17 @@ pub struct Row {
     pub verdict: Verdict,
 }
 
-/// One configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
     /// Title of the configuration.
     pub title: String,
-    /// The stages in the order of today's graph, those that are gone, the total.
+    /// Stages in the order of today's graph, then missing ones, then the total.
     pub rows: Vec<Row>,
-    /// What besides the program differs from the recording.
+    /// Other differences from the recording.
     pub notes: Vec<String>,
 }
 
-/// Compares times with recorded ones. `sha256` is that of today's scene.
+/// Compares times with recorded ones. `sha256` is the hash of today's scene.
 pub fn compare(recorded: &Recorded, times: &Times, sha256: &str, tolerance: f64) -> Compared {
     let row = |stage: &str, before: Option<&Vec<f64>>, now: Option<&Vec<f64>>| Row {
         stage: stage.into(),
@@ -87,7 +86,7 @@ pub fn compare(recorded: &Recorded, times: &Times, sha256: &str, tolerance: f64)
     }
 }
 
-/// How the medians of some rounds stand to recorded ones, ms; `tolerance` is a part of the recorded time.
+/// Compares medians of rounds with recorded ones, ms. `tolerance` is relative to the recorded time.
 pub fn judge(recorded: &[f64], now: &[f64], tolerance: f64) -> Verdict {
     let (before, after) = (least(recorded), least(now));
     let beyond = |a: f64, b: f64| b > a * (1.0 + tolerance) && b - a > FLOOR_MS;
@@ -137,7 +136,6 @@ fn notes(recorded: &Recorded, times: &Times, sha256: &str) -> Vec<String> {
     notes
 }
 
-/// The tables for people.
 pub fn against_text(record: &Record, bench: &Bench, compared: &[Compared]) -> String {
     let DeviceStats { name, driver, .. } = &bench.device;
     let mut out = format!(
@@ -181,7 +179,7 @@ fn word(verdict: Verdict) -> &'static str {
 }
 
 impl Row {
-    /// Today's time in recorded ones.
+    /// Today's time relative to the recorded one.
     pub fn ratio(&self) -> Option<f64> {
         self.recorded
             .zip(self.now)
@@ -190,7 +188,7 @@ impl Row {
     }
 }
 
-/// The stages that became slower, configuration by configuration, in one line; `None` without any.
+/// The slower stages by configuration in one line, `None` without any.
 pub fn slower(compared: &[Compared]) -> Option<String> {
     let line = |row: &Row| match row.ratio() {
         Some(ratio) => format!("{} {ratio:.2} times", row.stage),
@@ -209,7 +207,7 @@ pub fn slower(compared: &[Compared]) -> Option<String> {
     (!list.is_empty()).then(|| list.join("; "))
 }
 
-/// A part as per cent, for people.
+/// A share as a percentage.
 pub fn percent(part: f64) -> String {
     format!("{} %", (part * 1e4).round() / 100.0)
 }

@@ -7,11 +7,8 @@ use crate::campaign::points::labelled;
 use crate::lab::LabError;
 use indexmap::IndexSet;
 
-/// File names (without `.svg`) and charts: the stages of every configuration as stacked bars, and for every stage its
-/// time against what the columns of the tables vary, at the largest size.
-///
-/// # Errors
-/// Drawing into memory gives none, whatever the benchmark.
+/// File names (without `.svg`) and charts: stacked bars of the stages of all configurations, and
+/// one chart of each stage's time over the varied setting at the largest size.
 pub fn charts(bench: &Bench) -> Result<Vec<(String, String)>, LabError> {
     let measured = bench.configurations.iter().filter(|c| c.times.is_some());
     let title = format!("{}: ms of each stage (medians)", bench.device.name);

@@ -1,17 +1,17 @@
-//! Benchmarks: configurations measured in turn, round after round, so that what drifts (clocks, heat, other programs)
-//! meets all of them alike, and each round compares like with like.
+//! Benchmarks: configurations are measured round by round. Drift of clocks, heat and other programs
+//! affects all of them alike, and each round compares under equal conditions.
 
 mod against;
 mod charts;
 mod record;
 mod tables;
 
-pub use against::{
-    Compared, FLOOR_MS, Row, Verdict, against_text, compare, judge, percent, slower,
-};
-pub use charts::charts;
-pub use record::{RECORD_SCHEMA, Record, Recorded, check_record, record_file};
-pub use tables::{csv, text};
+pub(crate) use against::{Compared, against_text, compare, percent, slower};
+pub use against::{Verdict, judge};
+pub(crate) use charts::charts;
+pub use record::Record;
+pub(crate) use record::{Recorded, check_record, record_file};
+pub(crate) use tables::{csv, text};
 
 use crate::campaign::points::SweepPoint;
 use crate::campaign::runner::{Progress, Runner};
@@ -23,70 +23,63 @@ use indexmap::IndexMap;
 use serde::Serialize;
 
 /// Version of the JSON file.
-pub const SCHEMA: &str = "conelab-bench-1";
+pub(crate) const SCHEMA: &str = "conelab-bench-1";
 
 /// The measurements of a benchmark.
 #[derive(Clone, Debug, Serialize)]
-pub struct Bench {
+pub(crate) struct Bench {
     /// [`SCHEMA`].
     pub schema: String,
-    /// The device.
     pub device: DeviceStats,
-    /// How often every configuration had its turn.
     pub rounds: usize,
-    /// Frames of every turn; those of its warm-up at least.
+    /// Frames of every round. Its warm-up has at least this number.
     pub frames: Frames,
-    /// Names of what differs, in order.
+    /// Names of the varied settings, in order.
     pub names: Vec<String>,
-    /// In order.
     pub configurations: Vec<Configuration>,
 }
 
 /// One of the configurations.
 #[derive(Clone, Debug, Serialize)]
-pub struct Configuration {
-    /// Its values, by the names of what differs.
+pub(crate) struct Configuration {
+    /// Values by the names of the varied settings.
     pub labels: IndexMap<String, String>,
-    /// Its picture, pixels.
+    /// Picture size, pixels.
     pub size: (u32, u32),
     /// Name of its experiment.
     pub experiment: String,
-    /// Its times; absent where it failed.
+    /// Times, `None` if it failed.
     pub times: Option<Times>,
-    /// Why it failed.
     pub error: Option<String>,
 }
 
 /// Times over all rounds.
 #[derive(Clone, Debug, Serialize)]
-pub struct Times {
-    /// Times of every pass, with settings and memory; the warm-up is that of the round with the shortest.
+pub(crate) struct Times {
+    /// Times of every pass, with settings and memory. The warm-up is the shortest of all rounds.
     pub stats: Stats,
-    /// Times of every stage (passes that the graph counts together, added up frame by frame), ms.
+    /// Times of every stage, ms: the sum over its passes, frame by frame.
     pub stages: IndexMap<String, Spread>,
-    /// Median of the total in every round, ms: pairs with those of other configurations.
+    /// Median of the total in every round, ms.
     pub rounds: Vec<f64>,
     /// Median of every stage in every round, ms.
     pub stage_rounds: IndexMap<String, Vec<f64>>,
 }
 
-/// The turns that a configuration has had.
+/// Rounds of a configuration so far.
 #[derive(Default)]
 struct Turns {
-    /// What its last one has left.
+    /// Reusable parts of the last session.
     left: Option<ReusableParts>,
     /// Frames of every round.
     rounds: Vec<Vec<FrameTimes>>,
-    /// Frames before those measured, in the round with the fewest.
+    /// Warm-up frames of the round with the fewest.
     warmup: Option<usize>,
 }
 
-/// Measures every configuration `rounds` times in turn. Textures are made anew for each turn, as all of them together
-/// might not fit; pipelines and scenes are kept.
-///
-/// # Errors
-/// A graph that cannot be read. A configuration that fails is left out of the rounds that follow, with its error.
-pub fn bench(
+/// Measures every configuration in each of `rounds` rounds. Textures are created again for each
+/// measurement, because those of all configurations may not fit. Pipelines and scenes are reused.
+pub(crate) fn bench(
     runner: &mut Runner,
     names: Vec<String>,
     points: &[SweepPoint],
@@ -147,7 +140,7 @@ pub fn bench(
                             configuration.times =
                                 Some(times_of(&session, stats, &all, &turns.rounds));
                         }
-                        // The next configuration's first turn starts from this one's pipelines and scene.
+                        // The next configuration reuses pipelines and scene.
                         last = (round == 0).then(|| session.share());
                         turns.left = Some(session.share());
                     }
@@ -169,7 +162,7 @@ pub fn bench(
     })
 }
 
-/// What the frames of all rounds, and of each, say.
+/// Statistics over all frames, and the median of each round.
 fn times_of(
     session: &Session,
     stats: Stats,

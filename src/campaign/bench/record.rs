@@ -1,5 +1,5 @@
-//! Recorded times: what a device needed for some configurations, and all that running them again takes
-//! (docs/sweeps.md).
+//! Recorded times: times of some configurations on one device, with the settings to measure them
+//! again (docs/sweeps.md).
 
 use super::{Bench, Times};
 use crate::campaign::points::{Labels, SweepPoint};
@@ -21,39 +21,35 @@ use std::path::{Path, PathBuf};
 pub const RECORD_SCHEMA: &str = "conelab-times-1";
 /// Largest file, bytes.
 const MAX_BYTES: u64 = 4 << 20;
-/// Most configurations.
 const MAX_CONFIGURATIONS: usize = 1000;
-/// Most rounds, and most frames of a turn.
+/// Largest number of rounds, and of frames in a round.
 const MAX_FRAMES: usize = 100_000;
 
 /// Times of configurations on one device.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// [`RECORD_SCHEMA`].
+    /// Version of the file.
     pub schema: String,
-    /// Program version.
-    pub version: String,
-    /// The device.
-    pub device: DeviceStats,
-    /// How often every configuration had its turn.
-    pub rounds: usize,
+    pub(crate) version: String,
+    pub(crate) device: DeviceStats,
+    pub(crate) rounds: usize,
     /// Frames of every turn.
     pub frames: Frames,
-    /// In order.
-    pub configurations: Vec<Recorded>,
+    pub(crate) configurations: Vec<Recorded>,
 }
 
 /// A configuration and its times.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recorded {
-    /// Experiment file, from the program's folder or absolute. It may change after the recording: a parameter that was
-    /// renamed in file and graph does not make the record useless.
+    /// Experiment file, relative to the program's folder or absolute. The record stays valid if a
+    /// parameter is renamed in file and graph.
     pub experiment: String,
-    /// What is set over it: name and RON. Scene, camera, size and time are always among them.
+    /// Settings over the experiment: name and RON. They always contain scene, camera, size and
+    /// time.
     pub settings: IndexMap<String, String>,
     /// SHA-256 of the scene's content.
     pub scene_sha256: String,
-    /// Every parameter, for people: what differs today is named.
+    /// All parameters, to print those that differ today.
     pub params: BTreeMap<String, String>,
     /// Median of the whole frame in every round, ms.
     pub total: Vec<f64>,
@@ -61,7 +57,8 @@ pub struct Recorded {
     pub stages: IndexMap<String, Vec<f64>>,
 }
 
-/// The file of a device's record: `path` itself if it ends in `.json`, else the one of that device in the folder `path`.
+/// File of a device's record: `path` itself if it ends in `.json`, else a file in the folder
+/// `path`.
 pub fn record_file(path: &Path, device: &str) -> PathBuf {
     if path.extension().is_some_and(|e| e == "json") {
         return path.to_path_buf();
@@ -74,10 +71,7 @@ pub fn record_file(path: &Path, device: &str) -> PathBuf {
     path.join(letters.split_whitespace().collect::<Vec<_>>().join("-") + ".json")
 }
 
-/// Checks that what a record holds can be run: experiments, graphs, parameters. Scenes are not opened.
-///
-/// # Errors
-/// No record; all mistakes, each once.
+/// Checks that the experiments, graphs and parameters of a record are valid. Scenes are not opened.
 pub fn check_record(home: &Workspace, path: &Path) -> Result<(), LabError> {
     let mut warm = Warm::default();
     let mut mistakes = Mistakes::default();
@@ -89,11 +83,12 @@ pub fn check_record(home: &Workspace, path: &Path) -> Result<(), LabError> {
 }
 
 impl Record {
-    /// The record of a benchmark; `points` are what it measured.
-    ///
-    /// # Errors
-    /// A configuration that failed; a device without timestamps.
-    pub fn of(bench: &Bench, points: &[SweepPoint], home: &Workspace) -> Result<Record, LabError> {
+    /// The record of a benchmark and its measured `points`.
+    pub(crate) fn of(
+        bench: &Bench,
+        points: &[SweepPoint],
+        home: &Workspace,
+    ) -> Result<Record, LabError> {
         let mut configurations = Vec::new();
         for (configuration, point) in bench.configurations.iter().zip(points) {
             let Some(times) = &configuration.times else {
@@ -118,10 +113,7 @@ impl Record {
         })
     }
 
-    /// Reads a record.
-    ///
-    /// # Errors
-    /// No such file, or not what `conelab bench --record` writes.
+    /// Reads and checks a record.
     pub fn read(path: &Path) -> Result<Record, LabError> {
         let wrong = |why: String| LabError::from(FileError::content(path, why));
         let record: Record = read_json(path, MAX_BYTES).map_err(|e| {
@@ -171,10 +163,7 @@ impl Record {
             })
     }
 
-    /// Whether its times can be compared with those of a device.
-    ///
-    /// # Errors
-    /// The record is of another device.
+    /// Checks that its times are comparable with those of a device.
     pub fn check_device(&self, device: &DeviceStats) -> Result<(), LabError> {
         if self.device.name == device.name {
             return Ok(());
@@ -199,7 +188,8 @@ impl Recorded {
             true => from_root(home, Path::new(&experiment.scene)),
             false => experiment.scene.clone(),
         };
-        // As a file in the program's folder would say it; camera and scene whole, and the graph if it was set.
+        // Settings as in a file of the program's folder: complete camera and scene, and the graph
+        // if it was set.
         let (path, mut settings) = (home.root.join("record"), IndexMap::new());
         for field in FIELDS.iter().filter(|f| f.name != "graph") {
             let text = match field.name {
@@ -214,7 +204,7 @@ impl Recorded {
         if point.labels.iter().any(|(name, _)| name == "graph") {
             settings.insert("graph".into(), format!("{:?}", experiment.graph));
         }
-        // What does not come from the experiment's file was set by the command line.
+        // Values that differ from the experiment's file come from the command line.
         let set = experiment
             .params
             .iter()
@@ -262,7 +252,7 @@ impl Recorded {
         }
     }
 
-    /// Everything that may be printed.
+    /// All texts that may be printed.
     fn texts(&self) -> impl Iterator<Item = &String> {
         let settings = self.settings.iter().flat_map(|(name, value)| [name, value]);
         let params = self.params.iter().flat_map(|(name, value)| [name, value]);
@@ -272,7 +262,7 @@ impl Recorded {
             .chain([&self.experiment, &self.scene_sha256])
     }
 
-    /// What it is, for people: experiment, scene, size, and what else is set.
+    /// Experiment, scene, size and other settings as a title.
     pub fn title(&self) -> String {
         let said = |name: &str| self.settings.get(name).map(|t| t.trim_matches('"'));
         let mut parts = vec![stem(&self.experiment)];
@@ -286,7 +276,7 @@ impl Recorded {
         parts.join(", ")
     }
 
-    /// Its values by name, for tables.
+    /// Values by name, for tables.
     pub fn labels(&self) -> Labels {
         let shown = self
             .settings
@@ -299,15 +289,12 @@ impl Recorded {
             .collect()
     }
 
-    /// Its experiment's file.
+    /// File of the experiment.
     pub fn file(&self, home: &Workspace) -> PathBuf {
         home.root.join(&self.experiment)
     }
 
-    /// The experiment as it would run today.
-    ///
-    /// # Errors
-    /// Mistakes of the file, and settings that are none; unknown parameters are found with the graph.
+    /// The experiment with today's file.
     pub fn experiment(&self, home: &Workspace) -> Result<Experiment, Vec<Diagnostic>> {
         let mut experiment = Experiment::read(&self.file(home))?;
         let (text, settings) = lines(
@@ -331,8 +318,8 @@ impl Recorded {
 /// Settings that every configuration has.
 const FIXED: [&str; 4] = ["scene", "camera", "size", "time"];
 
-/// A file as it is named in a record: from the program's folder where it lies in it, so that a record means the same in
-/// every checkout.
+/// Path for a record, relative to the program's folder if the file is inside it, so that records
+/// hold in every checkout.
 fn from_root(home: &Workspace, file: &Path) -> String {
     let whole = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
     let (root, file) = (whole(&home.root), whole(file));

@@ -9,17 +9,15 @@ use crate::results::table::{Table, cell};
 use indexmap::{IndexMap, IndexSet};
 use std::fmt::Write;
 
-/// Configurations that stand in one row of a table: those that differ in nothing but what the columns vary.
+/// Configurations that differ only in the setting of the columns.
 pub(super) struct Row<'a> {
-    /// What it is, without its size.
+    /// Title without the size.
     pub title: String,
     pub size: (u32, u32),
-    /// One for each column.
     pub cells: Vec<Option<&'a Configuration>>,
 }
 
 impl Row<'_> {
-    /// Of its pictures.
     pub fn pixels(&self) -> u64 {
         u64::from(self.size.0) * u64::from(self.size.1)
     }
@@ -41,7 +39,8 @@ impl Row<'_> {
     }
 }
 
-/// Name and values of what the columns vary: the first setting that is no size and no experiment.
+/// Name and values of the setting that varies over the columns: the first one except size and
+/// experiment.
 pub(super) fn columns(bench: &Bench) -> (String, Vec<String>) {
     let name = bench
         .names
@@ -98,8 +97,8 @@ pub(super) fn rows(bench: &Bench) -> Vec<Row<'_>> {
 /// Title and cells of a printed line.
 type Line = (String, Vec<Option<String>>);
 
-/// The tables for people: the stages of each configuration at the last size, the totals by size, and the totals of every
-/// row beside those of the first at the same size, compared round by round.
+/// Printed tables: stages of each configuration at the largest size, totals by size, and ratios of
+/// totals to the first row of the same size, by round.
 pub fn text(bench: &Bench) -> String {
     let (column, values) = columns(bench);
     let rows = rows(bench);
@@ -180,10 +179,8 @@ fn ratio(first: &Configuration, other: &Configuration) -> Option<String> {
     Some(format!("{:.2} ({:.2} to {:.2})", s.median, s.min, most))
 }
 
-/// One line for every pass, every stage and the total of each configuration, as comma-separated values.
-///
-/// # Errors
-/// Writing to memory gives none, whatever the benchmark.
+/// One line for every pass, every stage and the total of each configuration, as comma-separated
+/// values.
 pub fn csv(bench: &Bench) -> Result<String, LabError> {
     let mut rows: Vec<(&Configuration, &str, &str, Option<Spread>)> = Vec::new();
     for c in &bench.configurations {

@@ -1,10 +1,11 @@
-//! The cheapest setting that stays within a bound: a search over a few values of a few parameters.
+//! Search for the cheapest setting within a bound, over a few values of a few parameters.
 
 mod run;
 mod search;
 
-pub use run::{Fitted, Goal, Request, run};
-pub use search::{Found, Limits, Step, Stop, Trial, search};
+pub(crate) use run::{Fitted, Goal, Request, run};
+pub(crate) use search::Found;
+pub use search::{Limits, Stop, Trial, search};
 
 use crate::campaign::settings::Axis;
 use crate::experiment::Experiment;
@@ -12,11 +13,8 @@ use crate::graph::Graph;
 use crate::graph::param::Params;
 use crate::lab::LabError;
 
-/// The axes that a graph declares in `fit`, neighbours among their values alike, or those that are given.
-///
-/// # Errors
-/// An unknown parameter, a value that it does not take.
-pub fn axes(graph: &Graph, given: &[Axis]) -> Result<Vec<Axis>, LabError> {
+/// The given axes, or those that a graph declares in `fit`. Neighbouring values should be alike.
+pub(crate) fn axes(graph: &Graph, given: &[Axis]) -> Result<Vec<Axis>, LabError> {
     let axes = if given.is_empty() {
         graph.fit.clone()
     } else {
@@ -38,7 +36,7 @@ pub fn axes(graph: &Graph, given: &[Axis]) -> Result<Vec<Axis>, LabError> {
     Ok(axes)
 }
 
-/// The place on the axes nearest to an experiment's own values; the first of an axis where there is no nearest.
+/// Indices of the values nearest to the experiment's own ones; 0 on axes without a nearest.
 fn start(axes: &[Axis], params: &Params) -> Vec<usize> {
     let place = |(name, values): &Axis| {
         let own = params.get(name)?;
@@ -61,7 +59,7 @@ fn start(axes: &[Axis], params: &Params) -> Vec<usize> {
     axes.iter().map(|axis| place(axis).unwrap_or(0)).collect()
 }
 
-/// The experiment with the values of a place on the axes.
+/// The experiment with the values at these indices.
 fn at(experiment: &Experiment, axes: &[Axis], place: &[usize]) -> Experiment {
     let mut experiment = experiment.clone();
     for ((name, values), i) in axes.iter().zip(place) {

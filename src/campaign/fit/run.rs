@@ -1,5 +1,5 @@
-//! A search as a sweep whose points are chosen one after another: records, pictures and tables are those of a sweep, so
-//! that a search goes on where it was stopped and `conelab report` shows what it tried.
+//! A search as a sweep with points that are chosen one by one. It writes the records, pictures and
+//! tables of a sweep, so it can be continued, and `conelab report` shows all trials.
 
 use super::search::{Found, Limits, Trial, search};
 use super::{at, start};
@@ -18,24 +18,24 @@ use crate::metrics::Metric;
 use crate::results::stats::DeviceStats;
 use std::path::PathBuf;
 
-/// What is made small and what is bounded.
+/// The bounded quantity. The other one is minimised.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The least time with at most this error.
+    /// Least time with at most this error.
     Error(f64),
-    /// The least error in at most this time, ms.
+    /// Least error in at most this time, ms.
     Time(f64),
 }
 
 impl Goal {
-    /// The bounded quantity's bound.
+    /// Bound of the bounded quantity.
     pub fn bound(self) -> f64 {
         match self {
             Goal::Error(bound) | Goal::Time(bound) => bound,
         }
     }
 
-    /// A setting's time (ms) and error.
+    /// Time (ms) and error of a trial.
     pub fn time_and_error(self, trial: Trial) -> (f64, f64) {
         match self {
             Goal::Error(_) => (trial.cost, trial.bounded),
@@ -57,47 +57,42 @@ impl Goal {
     }
 }
 
-/// A search.
 pub struct Request<'a> {
-    /// The experiment that is varied.
+    /// Experiment before any change.
     pub experiment: &'a Experiment,
-    /// What is varied.
+    /// Varied parameters with their values.
     pub axes: &'a [Axis],
-    /// The quantity that is made small, and the bound of the other.
+    /// The bounded quantity with its bound.
     pub goal: Goal,
-    /// Part of the light that is compared.
+    /// Part of the light to score.
     pub part: &'a str,
-    /// How it is compared.
+    /// Metric of the scores.
     pub metric: &'static Metric,
-    /// Most settings to try.
+    /// Largest number of evaluations.
     pub evaluations: usize,
-    /// Gains below this part of a quantity are noise.
+    /// Relative gains below this are noise.
     pub least_gain: f64,
-    /// How long a setting is timed.
+    /// Frames of each evaluation.
     pub frames: Frames,
     /// Bounces of the reference.
     pub bounces: u32,
-    /// Samples of every pixel that the reference has at least.
+    /// Least number of samples per pixel of the reference.
     pub samples: u64,
-    /// Where everything is kept; what was tried there on the same device is not measured again.
+    /// Folder of the records. Settings in it are not measured again on the same device.
     pub folder: PathBuf,
 }
 
-/// What a search has found.
+/// Result of a search.
 pub struct Fitted {
-    /// The best setting, and everything that was tried.
+    /// Best setting and all trials.
     pub found: Found,
-    /// The best setting.
+    /// Experiment with the best setting.
     pub best: Experiment,
-    /// The graph's parameters at their defaults.
+    /// Default parameters of the graph.
     pub defaults: Params,
 }
 
-/// Searches. The folder's list of points is written when the search ends, the points themselves one by one.
-///
-/// # Errors
-/// What is wrong with experiment, scene or reference; a start that cannot be run; a folder that cannot be written to; no
-/// device.
+/// Searches. Writes each point at once, and the list of points at the end.
 pub fn run(
     open: &Open,
     open_scene: &OpenScene,
@@ -139,9 +134,8 @@ pub fn run(
     if let Goal::Error(bound) = request.goal
         && request.metric.within(bound, known.noise)
     {
-        let message = format!(
-            "warning: an error of {bound} is not told from the reference's noise: raise --spp"
-        );
+        let message =
+            format!("warning: an error of {bound} is within the reference's noise: raise --spp");
         runner.tell(Progress::Note(message));
     }
     let folder = points_in(&request.folder);
@@ -160,7 +154,7 @@ pub fn run(
     });
     let found = search(&sizes, &first, limits, &mut |place| {
         let tried = point(&mut runner, request, place)?;
-        // Times of another device say nothing here.
+        // Times of other devices do not count.
         let mut kept = |runner: &mut Runner, point: &SweepPoint| {
             let here = DeviceStats::of(&runner.lab.gpu.info);
             let record = measuring.kept(runner, &folder, point)?;
@@ -212,7 +206,7 @@ pub fn run(
     })
 }
 
-/// The values of a place, where there is more than one.
+/// The varied values, as text.
 fn names(axes: &[Axis], place: &[usize]) -> String {
     let list = axes.iter().zip(place).filter(|(axis, _)| axis.1.len() > 1);
     list.map(|((name, values), i)| format!("{name}={}", values[*i]))
@@ -234,7 +228,7 @@ fn point(runner: &mut Runner, request: &Request, place: &[usize]) -> Result<Swee
     )
 }
 
-/// Whether a record has the score that is searched by; those of an earlier search by another metric have not.
+/// Whether a record has the score of the search. Records of a search by another metric lack it.
 fn scored(record: &PointRecord, request: &Request) -> bool {
     record.done().is_none_or(|point| {
         point
@@ -244,7 +238,7 @@ fn scored(record: &PointRecord, request: &Request) -> bool {
     })
 }
 
-/// Both quantities of a setting; nothing, and why, where graph, device or one of the graph's checks refuses it.
+/// Both quantities of a setting. If graph, device or a check of the graph rejects it, the reason.
 fn quantities(record: &PointRecord, request: &Request) -> (Option<Trial>, Option<String>) {
     let Some(point) = record.done() else {
         return (None, record.error().map(String::from));
@@ -253,7 +247,7 @@ fn quantities(record: &PointRecord, request: &Request) -> (Option<Trial>, Option
         return (None, Some(first_line(warning).to_string()));
     }
     let scores = point.scores.get(request.part);
-    // Metrics leave pixels out that are no numbers; a setting that makes them must not look better for it.
+    // Metrics skip pixels that are not finite. Settings with such pixels must not gain from that.
     let value = scores
         .filter(|s| s.not_finite == 0)
         .map_or(f64::NAN, |s| s.get(request.metric.key));

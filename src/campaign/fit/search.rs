@@ -1,10 +1,11 @@
-//! Coordinate descent on a grid, restarted from the Pareto front of everything that was tried.
+//! Coordinate descent on a grid, restarted from the Pareto front of all trials.
 //!
-//! Each round tries the neighbours of one setting, one axis at a time: the neighbours of the best setting, or, once those
-//! are known, of the setting on the front whose bounded quantity is nearest to the bound. Such a setting is cheap and
-//! slightly above the bound, or within it and dear, so that two or three steps may lead past a local optimum. The search
-//! ends after [`PATIENCE`] rounds without a gain. It starts from the given setting, with every value of every axis, and
-//! from the last value of every axis.
+//! The search starts with every value of every axis around the given setting, and with the
+//! neighbours of the last values of all axes. Each round then tries the neighbours along each axis
+//! of one setting. It takes the best setting, or, if that is explored, the setting on the front
+//! that is nearest to the bound. That setting is cheap and slightly above the bound, or expensive
+//! and within it. Two or three steps from it may pass a local optimum. The search ends after
+//! [`PATIENCE`] rounds without a gain.
 
 use std::cmp::Ordering;
 use std::collections::{HashMap, HashSet};
@@ -21,7 +22,7 @@ pub struct Trial {
     pub bounded: f64,
 }
 
-/// When to stop.
+/// Conditions that end a search.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Largest value of the bounded quantity.
@@ -73,7 +74,7 @@ struct Search<'a, E> {
     limits: Limits,
     known: HashMap<Vec<usize>, Option<Trial>>,
     tried: Vec<Step>,
-    /// Settings whose neighbours were tried.
+    /// Settings with explored neighbours.
     explored: HashSet<Vec<usize>>,
 }
 
@@ -164,11 +165,8 @@ impl<E> Search<'_, E> {
     }
 }
 
-/// Searches a grid that has `sizes` values on its axes. `evaluate` gives the quantities of a setting, or `None` if it
-/// cannot be run. Returns `None` if the start cannot be run.
-///
-/// # Errors
-/// The errors of `evaluate`.
+/// Searches a grid that has `sizes` values on its axes. `evaluate` gives the quantities of a
+/// setting, or `None` if it cannot be run. Returns `None` if the start cannot be run.
 pub fn search<E>(
     sizes: &[usize],
     start: &[usize],

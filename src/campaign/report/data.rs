@@ -1,4 +1,4 @@
-//! What the page and its charts show, taken from the records of sweeps.
+//! Data of the page and its charts, from the records of sweeps.
 
 use crate::campaign::charts::file_name;
 use crate::campaign::points::{labelled, total_first};
@@ -9,15 +9,14 @@ use indexmap::IndexMap;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Bytes of pictures that go into a page.
+/// Largest size of the pictures in a page, bytes.
 const MAX_PICTURES: usize = 64 << 20;
 
-/// A measured point.
 #[derive(Clone, Debug, Serialize)]
 pub struct Dot {
     pub id: String,
     pub labels: IndexMap<String, String>,
-    /// Number of what is looked at, among those of [`Data`].
+    /// Index of the subject in [`Data`].
     pub subject: usize,
     /// GPU time of a frame, median and 95th percentile, ms.
     pub ms: f64,
@@ -26,9 +25,9 @@ pub struct Dot {
     pub bytes: u64,
     /// Median of each stage, ms, in the order of the graph.
     pub stages: Vec<(String, f64)>,
-    /// By part and metric.
+    /// Scores by part and metric.
     pub scores: BTreeMap<String, BTreeMap<String, f64>>,
-    /// By part.
+    /// Noise of the reference by part.
     pub noise: BTreeMap<String, f64>,
     pub warnings: Vec<String>,
     /// Its graph's name.
@@ -45,7 +44,6 @@ pub struct Dot {
 /// A point that could not be measured.
 pub struct Failed {
     pub labels: IndexMap<String, String>,
-    /// What is looked at, and the device's name.
     pub key: (Subject, String),
     pub error: String,
 }
@@ -57,21 +55,20 @@ pub struct Chart {
     pub subject: usize,
     pub part: String,
     pub metric: &'static Metric,
-    /// Numbers of dots.
     pub points: Vec<usize>,
     pub svg: String,
 }
 
 /// A dot of a chart.
 pub struct Scored {
-    /// Number of the dot.
+    /// Index of the dot.
     pub index: usize,
     pub ms: f64,
-    /// 0 is perfect.
+    /// Error, 0 for a perfect picture.
     pub error: f64,
-    /// Whether its relMSE is not told apart from the reference's noise.
+    /// Whether its relMSE is within the noise of the reference.
     pub noisy: bool,
-    /// Name of the experiment or graph that it is a variant of; empty where there is one alone.
+    /// Experiment or graph of the dot, empty if there is only one.
     pub experiment: String,
     /// Whether it is an unchanged experiment among points with other settings.
     pub preset: bool,
@@ -83,18 +80,18 @@ pub struct Data {
     pub sweeps: Vec<String>,
     pub names: Vec<String>,
     pub dots: Vec<Dot>,
-    /// Scene, size and device: only points of one subject can be compared.
+    /// Scene, size and device. Only points of one subject are comparable.
     pub subjects: Vec<String>,
-    /// What is looked at, and the device's name, of each subject.
+    /// Subject and device of each chart group.
     pub keys: Vec<(Subject, String)>,
-    /// Bounces of the reference that all parts of each subject are scored against.
+    /// Bounces of the reference for all parts, by subject.
     pub bounces: Vec<Option<u32>>,
-    /// Bounces and samples of a pixel of the references of each subject.
+    /// Bounces and samples per pixel of the references, by subject.
     pub samples: Vec<Vec<(u32, u64)>>,
-    /// How each subject was measured, one line.
+    /// Settings of the measurement in one line, by subject.
     pub settings: Vec<String>,
     pub parts: Vec<String>,
-    /// The reference of each subject, displayed: JPEG.
+    /// Displayed references by subject, JPEG.
     pub references: Vec<Option<Vec<u8>>>,
     pub failed: Vec<Failed>,
     /// Points without a result.
@@ -102,7 +99,7 @@ pub struct Data {
 }
 
 impl Dot {
-    /// Some of its values.
+    /// Title of a dot, from some of its values.
     pub fn title(&self, names: &[&String]) -> String {
         let text = labelled(
             names
@@ -117,7 +114,7 @@ impl Dot {
     }
 }
 
-/// The experiment that a dot is a variant of; empty where there is one alone.
+/// Experiment of a dot, empty if there is only one.
 fn experiment_of(dot: &Dot) -> &str {
     dot.labels.get("experiment").map_or("", String::as_str)
 }

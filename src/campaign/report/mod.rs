@@ -1,4 +1,4 @@
-//! Sweeps as something to look at: one page that needs no network, charts as SVG files, a table.
+//! Report of sweeps: one page that needs no network, charts as SVG, and a table.
 
 mod data;
 mod page;
@@ -17,16 +17,13 @@ use crate::metrics::{METRICS, Metric};
 use data::Chart;
 use std::path::{Path, PathBuf};
 
-/// Most bars of the chart of passes.
+/// Largest number of bars in the chart of passes.
 const MAX_BARS: usize = 40;
 
-/// Writes `index.html`, `points.csv` and the charts to a folder: error against time for every part of the light and
-/// every metric, and the passes of the points on the Pareto front of the total. Where there are several scenes, also a
-/// table of them, with `scenes.csv`.
-///
-/// # Errors
-/// No finished point; a folder that cannot be written to.
-pub fn write(
+/// Writes `index.html`, `points.csv` and the charts to a folder: error against time for every part
+/// of the light and every metric, and the passes of the points on the Pareto front of the total.
+/// Where there are several scenes, also a table of them, with `scenes.csv`.
+pub(crate) fn write(
     collected: &Collected,
     metrics: &[&'static Metric],
     folder: &Path,
@@ -86,7 +83,8 @@ fn charts(data: &Data, metrics: &[&'static Metric]) -> Result<Vec<Chart>, LabErr
     Ok(out)
 }
 
-/// Stacked bars of the points on the Pareto front of the total's relMSE; of all points where nothing is scored.
+/// Stacked bars of the points on the Pareto front of the total's relMSE, or of all points without
+/// scores.
 fn passes(data: &Data, subject: usize) -> Result<String, LabError> {
     let scored = data.scored(subject, "total", &METRICS[0]);
     let pairs: Vec<(f64, f64)> = scored.iter().map(|d| (d.ms, d.error)).collect();
@@ -106,7 +104,7 @@ fn passes(data: &Data, subject: usize) -> Result<String, LabError> {
     }
     chosen.sort_by(|a, b| data.dots[*a].ms.total_cmp(&data.dots[*b].ms));
     chosen.truncate(MAX_BARS);
-    // What all of them share tells none of them apart.
+    // Values that all dots share are left out.
     let value = |i: usize, name: &String| data.dots[i].labels.get(name);
     let differs = |name: &&String| {
         chosen

@@ -46,9 +46,6 @@ struct PageData<'a> {
 }
 
 /// The page as HTML.
-///
-/// # Errors
-/// Writing to memory gives none, whatever the data.
 pub fn page(
     data: &Data,
     charts: &[Chart],
@@ -84,7 +81,7 @@ pub fn page(
         charts: charted.collect(),
         dots: dots.collect(),
     };
-    // Nothing in a string can end the element that the data stands in.
+    // Without `<` no string can close the script element.
     let json = serde_json::to_string(&shown)
         .map_err(LabError::making("JSON"))?
         .replace('<', "\\u003c");

@@ -1,7 +1,7 @@
 //! The Pareto front of time and error.
 
-/// Indices of the points on the Pareto front, by time: those that no other (time, error) beats in both numbers, where
-/// less is better. Of equal points the first counts.
+/// Indices of the points on the Pareto front of (time, error), by time. Smaller is better. The
+/// first of equal points is taken.
 pub fn pareto(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len())
         .filter(|i| points[*i].0.is_finite() && points[*i].1.is_finite())

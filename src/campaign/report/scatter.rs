@@ -7,18 +7,19 @@ use crate::lab::LabError;
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (900, 560);
-/// Of the front; no other colour is red.
+/// Colour of the front; no other colour is red.
 const FRONT: RGBColor = RGBColor(200, 60, 40);
 
-/// The chart as SVG: its circles are the dots in their order, of a colour for each experiment; those on the front are larger and
-/// joined by a red line, and red where there is one experiment; those that are not told apart from the reference's noise are
-/// hollow. Presets have a square around them. The key is in the corner with the fewest points.
+/// The chart as SVG. It has one circle per dot, in order, and one colour per experiment. The front
+/// has larger circles and a red line; with one experiment its circles are red too. Hollow circles
+/// are within the noise of the reference. Presets have a square. The legend is in the corner with
+/// the fewest points.
 pub fn scatter(title: &str, metric: &str, dots: &[Scored]) -> Result<String, LabError> {
     drawn(title, SIZE, |area| draw(area, title, metric, dots))
 }
 
 fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), Failure> {
-    // A perfect point has no logarithm: it is drawn at the bottom, a tenth below the others.
+    // A perfect point has no logarithm. It is drawn a tenth below the others.
     let least = dots
         .iter()
         .map(|d| d.error)
@@ -74,7 +75,7 @@ fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), F
     if experiments.len() > 1 {
         for name in &experiments {
             let color = color_of(name);
-            // No circle: those are the dots.
+            // A rectangle, because circles are dots.
             let key = move |(x, y)| Rectangle::new([(x, y - 5), (x + 10, y + 5)], color.filled());
             chart
                 .draw_series(std::iter::empty::<Circle<(f64, f64), i32>>())?
@@ -96,14 +97,15 @@ fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), F
     Ok(())
 }
 
-/// The corner where a key with that number of lines covers the fewest points; both axes are logarithmic.
+/// The corner where a key of this number of lines covers the fewest points. Both axes are
+/// logarithmic.
 fn free_corner(
     points: &[(f64, f64)],
     (xs, ys): ((f64, f64), (f64, f64)),
     lines: usize,
 ) -> SeriesLabelPosition {
     use SeriesLabelPosition::{LowerLeft, LowerRight, UpperLeft, UpperRight};
-    // Shares of the axes that it takes: about 130 pixels, and 24 for each line.
+    // Size as shares of the axes: about 130 pixels, and 24 per line.
     let (width, height) = (0.18, 0.06 + 0.055 * lines as f64);
     let share = |v: f64, (low, high): (f64, f64)| (v / low).ln() / (high / low).ln();
     let covered = |right: bool, upper: bool| {
@@ -126,7 +128,7 @@ fn free_corner(
         .map_or(LowerLeft, |c| c.0)
 }
 
-/// The range of some numbers above 0 with room on both sides, at least a factor of 2.
+/// Range of positive numbers with margins, at least a factor of 2.
 fn around(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
     let room = (high / low)

@@ -1,5 +1,4 @@
-//! A table with one row for each scene, worst first: what every method shows of it, and how far that is from the
-//! reference.
+//! Table with one row per scene, worst first: pictures and errors of every method.
 
 use super::data::{Data, Dot};
 use crate::campaign::page::url;
@@ -13,16 +12,15 @@ use indexmap::{IndexMap, IndexSet};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 
-/// What tells rows apart; everything else that is varied tells methods apart.
+/// Settings that distinguish rows. All others distinguish methods.
 const OF_A_ROW: [&str; 4] = ["scene", "camera", "size", "time"];
-/// Most methods beside each other.
+/// Largest number of methods in a row.
 const MAX_METHODS: usize = 12;
 /// Numbers of a part, by metric.
 type Scores = BTreeMap<String, f64>;
-/// What rows are sorted by.
+/// Metric that sorts the rows.
 const WORST: &str = "flip";
 
-/// The table.
 pub struct Scenes {
     methods: Vec<String>,
     rows: Vec<Row>,
@@ -30,24 +28,21 @@ pub struct Scenes {
 
 /// A scene, or another view of one.
 struct Row {
-    /// What is looked at, and the device's name.
     key: (Subject, String),
-    /// By method.
     cells: Vec<Cell>,
 }
 
-/// What one method did there.
+/// Result of one method.
 #[derive(Clone)]
 enum Cell {
-    /// Number of the dot.
+    /// Index of the dot.
     Measured(usize),
     Failed(String),
-    /// Not finished.
     Left,
 }
 
 impl Scenes {
-    /// None where there are not several scenes.
+    /// `None` with fewer than two scenes.
     pub fn of(data: &Data) -> Option<Scenes> {
         let names: Vec<&String> = data
             .names
@@ -84,7 +79,8 @@ impl Scenes {
             .map(|(key, cells)| Row { key, cells })
             .collect();
         let several = rows.iter().any(|r| r.key.0.scene != rows[0].key.0.scene);
-        // Stable: scenes that the first method has no score of come last, in the order of the sweep.
+        // Stable sort: scenes without a score of the first method come last, in the order of the
+        // sweep.
         rows.sort_by(|a, b| match (a.worst(data), b.worst(data)) {
             (Some(a), Some(b)) => b.total_cmp(&a),
             (a, b) => b.is_some().cmp(&a.is_some()),
@@ -92,7 +88,7 @@ impl Scenes {
         several.then_some(Scenes { methods, rows })
     }
 
-    /// As a section of the page. Its pictures are filled in by the script, from the points' data.
+    /// Section of the page. The script inserts pictures from the points' data.
     pub fn html(&self, data: &Data) -> Markup {
         html! {
             h2 { "Scenes" }
@@ -116,9 +112,6 @@ impl Scenes {
     }
 
     /// As comma-separated values (RFC 4180), a line for each scene, method and number of bounces.
-    ///
-    /// # Errors
-    /// Writing to memory gives none, whatever the data.
     pub fn csv(&self, data: &Data) -> Result<String, LabError> {
         let mut lines: Vec<Line> = Vec::new();
         for row in &self.rows {
@@ -193,7 +186,7 @@ impl Row {
         }
     }
 
-    /// What rows are sorted by: FLIP of the total of the first method, against the reference of most bounces.
+    /// Sort key: FLIP of the first method's total against the reference with most bounces.
     fn worst(&self, data: &Data) -> Option<f64> {
         match self.cells.first()? {
             Cell::Measured(i) => scores(data, &data.dots[*i]).first()?.1?.get(WORST).copied(),
@@ -231,7 +224,7 @@ impl Cell {
 fn scores<'d>(data: &Data, dot: &'d Dot) -> Vec<(String, Option<&'d Scores>)> {
     let mut list: Vec<(u32, &Scores)> = Vec::new();
     for (part, scores) in &dot.scores {
-        // All parts are scored against the first reference; the total's other scores say against which.
+        // All parts are scored against the first reference. Other scores of the total name theirs.
         let bounces = match part.as_str() {
             "total" => data.bounces[dot.subject],
             _ => part

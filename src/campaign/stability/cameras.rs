@@ -1,4 +1,4 @@
-//! Cameras that do not move on from where they are: a cut to another one, a path from a file.
+//! Cameras that do not continue from the experiment's: a cut, or a path from a file.
 
 use super::motion::Motion;
 use crate::camera_path::CameraPath;
@@ -7,21 +7,19 @@ use crate::lab::{LabError, camera_of};
 use crate::scene::Scene;
 use std::path::Path;
 
-/// The cameras of a motion that has its own.
+/// Cameras of a motion with its own ones.
 #[derive(Clone, Debug)]
 pub enum Cameras {
-    /// Another camera from a frame on.
+    /// Another camera from one frame on.
     Cut {
         /// The camera after the cut.
         to: PlacedCamera,
         /// The first frame of that camera.
         at: usize,
     },
-    /// Along a path.
     Path {
-        /// The path.
         path: CameraPath,
-        /// Its time at frame 0, s.
+        /// Time of the path at frame 0, s.
         from: f64,
         /// Time from frame to frame, s.
         step: f64,
@@ -29,10 +27,7 @@ pub enum Cameras {
 }
 
 impl Cameras {
-    /// The cameras of a cut or a path. `None` for a motion that moves the experiment's own camera or none at all.
-    ///
-    /// # Errors
-    /// No such camera in the scene; all mistakes of the path's file.
+    /// Cameras of a cut or a path, `None` for other motions.
     pub fn of(
         motion: &Motion,
         experiment: &Experiment,
@@ -62,7 +57,7 @@ impl Cameras {
         })
     }
 
-    /// The camera of a frame; `start` is the experiment's.
+    /// Camera of a frame; `start` is the experiment's.
     pub fn at(&self, start: &PlacedCamera, number: i64) -> PlacedCamera {
         match self {
             Cameras::Cut { to, at } => {

@@ -3,35 +3,30 @@
 use super::motion::Motion;
 use crate::campaign::settings::Setting;
 
-/// A method: what it sets over the suite's experiment.
+/// A method with its settings over the suite's experiment.
 #[derive(Clone, Debug)]
 pub struct Method {
-    /// Name of the method.
     pub name: String,
-    /// Settings of the method.
     pub set: Vec<Setting>,
 }
 
-/// Something that methods are looked at in.
+/// A situation in which methods are compared.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// Name of the case.
     pub name: String,
     /// Name of the variant, if the case has some.
     pub variant: String,
-    /// For people.
     pub about: String,
-    /// What it sets over the method.
+    /// Settings over the method's.
     pub set: Vec<Setting>,
-    /// What moves.
     pub motion: Motion,
-    /// Frames that run, moving, before the first measured one.
+    /// Frames before the first measured one; the case moves during them too.
     pub warmup: usize,
-    /// Frames measured, when nothing else is asked for.
+    /// Default number of measured frames.
     pub frames: usize,
-    /// Whether more or fewer frames may be asked for: a case with its own number knows what it needs.
+    /// Whether the case fixes its number of frames.
     pub own_frames: bool,
-    /// Names of the methods that it is for; all when empty.
+    /// Names of its methods, all if empty.
     pub methods: Vec<String>,
     /// Whether its voxels are compared with exact ones.
     pub voxels: bool,

@@ -6,17 +6,15 @@ use crate::lab::LabError;
 use crate::metrics::RELMSE;
 use crate::results::table::short;
 
-/// A chart.
 pub(super) struct Chart {
     /// File name without its ending.
     pub name: String,
-    /// The case that it belongs to; none is for the whole suite.
+    /// Case of the chart, `None` for the whole suite.
     pub case: Option<String>,
-    /// The chart.
     pub svg: String,
 }
 
-/// Bars over everything: part, name, title, value.
+/// Bars over all results: part, name, title, value.
 type Bars<'r> = (&'r str, String, String, fn(&PartResult) -> Option<f64>);
 
 fn all_bars<'r>(focus: Option<(&'r str, &'r str)>) -> Vec<Bars<'r>> {
@@ -45,8 +43,8 @@ fn all_bars<'r>(focus: Option<(&'r str, &'r str)>) -> Vec<Bars<'r>> {
     list
 }
 
-/// Over the frames of each case E_t, after a switch or a cut the error, for a switched light its response; bars over
-/// everything.
+/// E_t of each case by frame, the error after a switch or a cut, the response to a switched light,
+/// and bars over all results.
 pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
     let mut out = Vec::new();
     let focus = report.focus.as_ref().map(|f| (f.0.as_str(), f.1.as_str()));
@@ -87,7 +85,7 @@ pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
             };
             of.iter().filter_map(line).collect()
         };
-        // The first method's: it is the same for all.
+        // The reference is the same for all methods, so the first one's is taken.
         let grey = |lines: Vec<Line>, name: &str| {
             lines.into_iter().next().map(|l| Line {
                 name: name.into(),
@@ -139,7 +137,7 @@ pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
     Ok(out)
 }
 
-/// Values over frames; nothing where all of them are 0.
+/// Values by frame, `None` if all are 0.
 fn frames_chart(title: &str, unit: &str, list: &[Line]) -> Result<Option<String>, LabError> {
     let points = || list.iter().flat_map(|l| &l.points);
     let most = points().map(|p| p.1).fold(0.0, f64::max);

@@ -1,43 +1,41 @@
-//! The chart that a suite asks for: a dot for each method, static error against stability, with what it costs.
+//! Chart of a suite: static error against stability, one dot per method, with costs.
 
 use super::case::{Case, Method};
 use crate::campaign::settings::Setting;
 use crate::diagnostics::{At, Entries, Loc, RawText};
 use serde::Deserialize;
 
-/// Most values that are timed for one method.
+/// Largest number of values to time for one method.
 const MAX_VALUES: usize = 64;
 
 /// Static error against stability.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CostChart {
-    /// Cases whose mean relMSE goes to the right.
+    /// Cases for the x-axis: mean relMSE.
     pub error: Vec<String>,
-    /// Cases whose root mean square of E_t goes up. Methods are timed in the first of them.
+    /// Cases for the y-axis: root mean square of E_t. Methods are timed in the first one.
     pub motions: Vec<String>,
-    /// The part of the light; that which methods are looked at for when absent.
+    /// Part of the light. By default the graph's focus, else the total.
     #[serde(default)]
     pub part: Option<String>,
     /// Panels: titles and methods.
     #[serde(default)]
     pub groups: Entries<Vec<String>>,
-    /// Methods that are made as fast as the suite's first.
+    /// Methods that have to match the first method's time.
     #[serde(default)]
     pub equal_time: Option<EqualTime>,
 }
 
-/// What makes methods as fast as the suite's first one.
+/// Condition for equal times.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EqualTime {
-    /// One parameter
     pub parameter: Loc<String>,
-    /// at each of its values.
+    /// Values of the parameter.
     pub values: Vec<RawText>,
-    /// The methods.
     pub methods: Vec<String>,
-    /// How far a time may be from the first's, part of it, before tables say so.
+    /// Largest deviation from the first method's time, relative to it. Tables mark larger ones.
     #[serde(default = "near")]
     pub tolerance: f64,
 }
@@ -52,10 +50,7 @@ impl CostChart {
         self.part.as_deref().unwrap_or("total")
     }
 
-    /// Checks names and numbers. Without groups all methods are one.
-    ///
-    /// # Errors
-    /// The text for the user.
+    /// Checks names and numbers. Without groups, all methods form one.
     pub fn checked(mut self, methods: &[Method], cases: &[Case]) -> Result<CostChart, String> {
         if self.error.is_empty() || self.motions.is_empty() {
             return Err("a chart needs at least one case for `error` and one for `motions`".into());
@@ -115,7 +110,6 @@ impl CostChart {
         Ok(self)
     }
 
-    /// Leaves out methods that do not stay.
     pub(super) fn keep(&mut self, stays: &dyn Fn(&String) -> bool) {
         self.groups
             .0
@@ -127,7 +121,7 @@ impl CostChart {
             .for_each(|e| e.methods.retain(stays));
     }
 
-    /// What a method is timed at, if it is one of those that are made as fast as the first.
+    /// Settings for timing a method that has to match the first method's time.
     pub fn varied(&self, method: &str) -> Vec<Setting> {
         let own = self
             .equal_time
@@ -141,7 +135,7 @@ impl CostChart {
             .collect()
     }
 
-    /// A method at each of its values, or as it is.
+    /// The method at each of its values, or unchanged.
     pub fn variants(&self, method: &Method) -> Vec<Method> {
         let settings = self.varied(&method.name);
         let with = |s| Method {

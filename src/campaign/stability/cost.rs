@@ -1,7 +1,9 @@
-//! What methods cost: GPU time and memory of the frames that make the picture and nothing else, one method after another in
-//! several rounds, so that a device whose clock drifts is as unfair to all. For methods that are to be as fast as the first,
-//! the values of a parameter are taken to be in the order of their costs: halving finds the two between which the first's
-//! time lies, and the nearer is taken.
+//! Costs of methods: GPU time and memory of frames that compute only the picture. Methods are timed
+//! in several rounds, so that drifting clocks affect all of them alike.
+//!
+//! Methods that have to match the first one's time are timed at values of a parameter. The values
+//! must be in the order of their costs. Bisection finds the two that enclose the first method's
+//! time, and the nearer one is chosen.
 
 use super::case::Method;
 use super::chart_spec::CostChart;
@@ -18,11 +20,10 @@ use crate::vulkan::VulkanError;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// How often every candidate is timed that is not passed over.
 const ROUNDS: usize = 3;
-/// Frames before those that are timed, in each round, at least.
+/// Least number of warm-up frames in each round.
 const WARMUP: usize = 4;
-/// Frames that are timed, in each round.
+/// Timed frames in each round.
 const FRAMES: i64 = 12;
 /// Version of `cost.json`.
 const SCHEMA: &str = "conelab-stability-cost-1";
@@ -36,11 +37,8 @@ struct Kept {
     costs: Vec<Cost>,
 }
 
-/// What all charted methods of a suite cost. What `cost.json` of the folder knows is taken from there, so that a suite that
-/// goes on goes on with the same choice.
-///
-/// # Errors
-/// What is wrong with the suite; no device; a method that can be timed at none of its values.
+/// Costs of all charted methods. Entries of the folder's `cost.json` are reused, so that a
+/// continued suite keeps its choice.
 pub(super) fn costs(
     runner: &mut Runner,
     suite: &Suite,
@@ -54,7 +52,8 @@ pub(super) fn costs(
         .take(1)
         .chain(suite.methods.iter().skip(1).filter(charted))
         .collect();
-    // A suite of all candidates in one case: its plan checks every value, and gives each its number.
+    // A suite of all candidates in one case. Its plan checks every value and computes every
+    // identifier.
     let timed = Suite {
         methods: names.iter().flat_map(|m| chart.variants(m)).collect(),
         cases: suite
@@ -120,7 +119,8 @@ pub(super) fn costs(
     })?;
     let of = ROUNDS * todo.len();
     for round in 0..ROUNDS {
-        // The first is timed again before each method: what is compared lies close together.
+        // The first method is timed again before each method, so that both times are close
+        // together.
         let mut before = None;
         let mut first_cost = (0.0, 0);
         for (i, (cost, candidate, job)) in todo.iter().enumerate() {
@@ -183,24 +183,25 @@ pub(super) fn costs(
             costs: costs.clone(),
         })?,
     )?;
-    // As the next run will read it, to the last place.
+    // Reads the file back, so that numbers are those of the next run.
     Ok(Some(read(&path))
         .filter(|k| k.len() == costs.len())
         .unwrap_or(costs))
 }
 
-/// A candidate that is not timed yet: its method's place, its own among its method's, and what is run.
+/// A candidate without a time: index of its method, index among the candidates of the method, and
+/// its job.
 type Open<'j> = (usize, usize, &'j Job);
 
 /// Median of a job's frames, ms, and the bytes of its resources.
 type Timed = Result<(f64, u64), LabError>;
 
-/// Median and bytes of a candidate, and the first method's ms right after it.
+/// Median and bytes of a candidate, then the first method's time, ms.
 type CandidateTime = Result<(Timed, f64), LabError>;
 
-/// For every method, the two neighbouring candidates whose times enclose the first method's; all where there are at
-/// most two. `times`: a candidate's and the first method's, one after the other. A candidate that fails counts as too
-/// slow.
+/// The two neighbouring candidates of each method that enclose the first method's time; all if
+/// there are at most two. `times` returns the time of a candidate, then that of the first method. A
+/// candidate that fails counts as too slow.
 fn between<'j>(
     todo: &[Open<'j>],
     times: &mut dyn FnMut(&Job) -> CandidateTime,
@@ -221,7 +222,7 @@ fn between<'j>(
     Ok(left)
 }
 
-/// Whether what was kept is of the same candidates.
+/// Whether a stored cost has the same candidates.
 fn same(kept: &Cost, wanted: &Cost) -> bool {
     let list = |c: &Cost| {
         c.candidates
@@ -242,7 +243,7 @@ fn told(runner: &mut Runner, job: &Job, done: usize, of: usize) {
     )));
 }
 
-/// What is kept; folders may come from anywhere, and what is no such file is nothing.
+/// Stored costs. The folder is not trusted, so invalid files are ignored.
 fn read(path: &Path) -> Vec<Cost> {
     let kept = read_json::<Kept>(path, MAX_FILE)
         .ok()
@@ -250,7 +251,7 @@ fn read(path: &Path) -> Vec<Cost> {
     kept.map_or(Vec::new(), |k| k.costs)
 }
 
-/// Chooses the candidate whose time is nearest to the first method's.
+/// Chooses the candidate with the time nearest to the first method's.
 fn choose(cost: &mut Cost) {
     let far = |c: &Candidate| c.ratio().map(|r| r.ln().abs());
     let timed = cost
@@ -261,7 +262,7 @@ fn choose(cost: &mut Cost) {
     cost.chosen = timed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|c| c.0);
 }
 
-/// The suite with what was chosen.
+/// The suite with the chosen values.
 pub(super) fn chosen(suite: &Suite, chart: &CostChart, costs: &[Cost]) -> Suite {
     let mut suite = suite.clone();
     for method in &mut suite.methods {
@@ -273,7 +274,7 @@ pub(super) fn chosen(suite: &Suite, chart: &CostChart, costs: &[Cost]) -> Suite 
     suite
 }
 
-/// Times a job. Every session is a new one: memory holds one at a time.
+/// Times a job in a new session, so that only one is in memory.
 fn time(runner: &mut Runner, job: &Job) -> Timed {
     let Runner { lab, warm, .. } = runner;
     let loaded = warm.graph(&lab.home, &job.experiment.graph)?.clone();
@@ -297,7 +298,8 @@ fn time(runner: &mut Runner, job: &Job) -> Timed {
     )?;
     let cell = cell_of(&mut session, job)?;
     let mut lights = job.scene.lights.clone();
-    // Sessions are built between the frames of one and the next: a GPU that waits for them falls to a low clock.
+    // Sessions are built between frames, and an idle GPU falls to a low clock, so a warm-up
+    // follows.
     place(lab, &mut session, job, -1, cell, &mut lights)?;
     let warm_up = WarmUp::of(&lab.gpu.info, WARMUP);
     warm_up.run(&mut || Ok::<_, LabError>(session.frame(0.0)?.map_or(0.0, |t| t.gpu_ms)))?;

@@ -25,8 +25,8 @@ pub(crate) struct Failure {
     worst: Worst,
 }
 
-/// The worst case of each method: one among cases of one frame, by relMSE, and one among the others, by E_t. Cases above
-/// the noise of their reference come before all others.
+/// The worst case of each method: one among cases of one frame, by relMSE, and one among the
+/// others, by E_t. Cases above the noise of their reference come before all others.
 pub(crate) fn failures(report: &Report) -> Vec<Failure> {
     let methods: IndexSet<&str> = report
         .results

@@ -1,4 +1,4 @@
-//! Suite files: methods, and what moves (docs/stability.md).
+//! Suite files: methods and motions (docs/stability.md).
 
 use super::case::{Case, Method};
 use super::chart_spec::CostChart;
@@ -15,9 +15,9 @@ use crate::measure::Warm;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
-/// Most frames of a case, and most before them.
+/// Largest number of frames of a case, and of its warm-up.
 const MAX_FRAMES: usize = 10_000;
-/// Most methods times cases.
+/// Largest number of methods times cases.
 const MAX_JOBS: usize = 2000;
 
 #[derive(Debug, Deserialize)]
@@ -65,33 +65,30 @@ struct CaseFile {
     variants: Entries<Entries<RawText>>,
 }
 
-/// A suite.
+/// A suite of methods and cases.
 #[derive(Clone, Debug)]
 pub struct Suite {
     /// The file's stem.
     pub name: String,
     /// The file's text.
     pub text: String,
-    /// What methods and cases change; the last of its sources is the suite's text.
+    /// The experiment before any change. The last of its sources is the suite's text.
     pub experiment: Experiment,
-    /// Samples a pixel of the references.
+    /// Samples per pixel of the references.
     pub samples: u64,
-    /// Their bounces.
-    pub bounces: u32,
-    /// Their seed, one for all frames.
+    pub(crate) bounces: u32,
+    /// Seed of the references, one for all frames.
     pub seed: u32,
-    /// What everything sets.
-    pub set: Vec<Setting>,
+    pub(crate) set: Vec<Setting>,
     /// The methods, in order.
     pub methods: Vec<Method>,
     /// The cases, in order.
     pub cases: Vec<Case>,
-    /// The part of the light whose worst frames are kept as pictures.
+    /// Part of the light in the pictures of worst frames.
     pub pictures: String,
-    /// The chart of costs, besides the cases.
+    /// Chart of the costs.
     pub chart: Option<CostChart>,
-    /// Folder of the file.
-    pub folder: PathBuf,
+    pub(crate) folder: PathBuf,
 }
 
 fn total() -> String {
@@ -99,10 +96,7 @@ fn total() -> String {
 }
 
 impl Suite {
-    /// Leaves out all methods but these and the first.
-    ///
-    /// # Errors
-    /// A name that is none of the suite's methods; the text for the user.
+    /// Removes all methods except these and the first.
     pub fn keep(&mut self, names: &[String]) -> Result<(), String> {
         let known: Vec<&str> = self.methods.iter().map(|m| m.name.as_str()).collect();
         if let Some(name) = names.iter().find(|n| !known.contains(&n.as_str())) {
@@ -124,9 +118,6 @@ impl Suite {
     }
 
     /// Reads a suite and its experiment.
-    ///
-    /// # Errors
-    /// All mistakes of the file and of the experiment.
     pub fn read(path: &Path) -> Result<Suite, Vec<Diagnostic>> {
         let (file, mut source) = Source::read::<SuiteFile>(
             path,
@@ -229,11 +220,9 @@ impl Suite {
         })
     }
 
-    /// The experiment of a method in a case: the suite's settings, the method's, the case's. Parameters of the suite and of
-    /// cases are for the methods whose graphs have them; `known` says which a graph has.
-    ///
-    /// # Errors
-    /// Settings that are none, with their places.
+    /// The experiment of a method in a case, with the settings of suite, method and case.
+    /// Parameters of the suite and of cases apply only to graphs that have them; `known` returns
+    /// the parameters of a graph.
     pub fn experiment(
         &self,
         method: &Method,
@@ -243,7 +232,7 @@ impl Suite {
         let mut experiment = self.experiment.clone();
         experiment.name = method.name.clone();
         let all = || self.set.iter().chain(&method.set).chain(&case.set);
-        // The graph first: it says which parameters there are.
+        // The graph decides which parameters exist, so it comes first.
         let own_graph = all().rfind(|s| s.name.value == "graph");
         let mut errors = apply(&mut experiment, own_graph, &self.folder);
         let other = experiment.graph != self.experiment.graph;
@@ -269,10 +258,8 @@ impl Suite {
     }
 }
 
-/// Checks a suite without opening its scenes: experiment, graphs, and the parameters of every method in every case.
-///
-/// # Errors
-/// All mistakes, each once.
+/// Checks a suite without opening its scenes: experiment, graphs, and the parameters of every
+/// method in every case.
 pub fn check(home: &Workspace, path: &Path) -> Result<(), LabError> {
     let suite = Suite::read(path).map_err(LabError::Input)?;
     let mut warm = Warm::default();

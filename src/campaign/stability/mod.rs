@@ -1,5 +1,5 @@
-//! Stability: how methods behave when camera, actors or light move, frame by frame against the reference, and how they
-//! fail in pictures that do not move (docs/stability.md).
+//! Stability: how methods behave when camera, actors or light move, frame by frame against the
+//! reference, and how they fail in pictures that do not move (docs/stability.md).
 
 mod cameras;
 mod case;
@@ -21,15 +21,9 @@ mod sequence;
 mod series;
 mod table;
 
-pub use cameras::Cameras;
-pub use chart_spec::{CostChart, EqualTime};
 pub(crate) use failures::{failures, sheet, table as failure_table};
-pub use file::{Suite, check};
-pub use motion::{FrameState, Motion, Unit};
-pub use param_track::ParamTrack;
-pub use plan::{Job, Options, plan};
-pub use record::{
-    About, Candidate, CaseRecord, Cost, FrameScore, Measured, PartResult, Report, Worst,
-};
-pub use run::run;
-pub use score::{Change, Flicker, Step, change, flicker, settling, step};
+pub use file::Suite;
+pub(crate) use file::check;
+pub(crate) use plan::Options;
+pub(crate) use run::run;
+pub use score::{change, flicker, settling, step};

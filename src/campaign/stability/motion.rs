@@ -1,4 +1,4 @@
-//! What moves, and where it is at each frame.
+//! Motions, and the state of a scene at each frame.
 
 use crate::diagnostics::RawText;
 use crate::experiment::{CameraChoice, PlacedCamera};
@@ -7,76 +7,70 @@ use crate::scene::{Light, Scene};
 use glam::{Mat4, Quat, Vec3};
 use serde::Deserialize;
 
-/// What moves from frame to frame.
+/// Change from frame to frame.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Motion {
-    /// Nothing moves.
     #[default]
     Still,
-    /// The camera, by so much a frame.
+    /// The camera, by these steps per frame.
     Camera {
-        /// Forwards.
         #[serde(default)]
         dolly: f32,
-        /// To the right.
         #[serde(default)]
         strafe: f32,
-        /// Upwards.
         #[serde(default)]
         rise: f32,
         /// To the left, degrees.
         #[serde(default)]
         yaw: f32,
-        /// Upwards, degrees.
         #[serde(default)]
         pitch: f32,
         /// Unit of the lengths.
         #[serde(default)]
         unit: Unit,
     },
-    /// The animated instances of the scene.
+    /// Animated instances of the scene.
     Actors {
         /// Time from frame to frame, s.
         step: f64,
-        /// Size of what is animated, along the axes of its own mesh.
+        /// Size of animated meshes, along their own axes.
         #[serde(default = "one")]
         scale: (f32, f32, f32),
     },
-    /// A light, by so much a frame.
+    /// A light, by these steps per frame.
     Light {
-        /// Its name in the scene.
+        /// Name of the light.
         name: String,
-        /// m; of a light that has a place.
+        /// Shift in m, for lights with a position.
         #[serde(default)]
         shift: (f32, f32, f32),
-        /// Around the y axis, degrees; of a light that has a direction.
+        /// Rotation about the y axis in degrees, for lights with a direction.
         #[serde(default)]
         turn: f32,
     },
-    /// A light that is switched.
     Switch {
-        /// Its name in the scene.
+        /// Name of the light.
         name: String,
         /// The first frame of the new light, counted from the first measured one, at least 1.
         at: usize,
-        /// Part of the scene's colour before.
+        /// Factor of the scene's colour before the switch.
         from: f32,
-        /// Part of the scene's colour from then on.
+        /// Factor of the scene's colour from then on.
         to: f32,
     },
     /// The camera jumps to another one.
     Cut {
-        /// A camera of the scene, or one written out.
+        /// A camera of the scene, or a new one.
         to: CameraChoice,
         /// Its first frame, counted from the first measured one, at least 1.
         at: usize,
     },
-    /// The camera along a path, in place of the experiment's.
+    /// The camera along a path, instead of the experiment's.
     Path {
-        /// The path's file, relative to the suite.
+        /// File of the path, relative to the suite.
         file: String,
-        /// The path's time at the first measured frame, s.
+        /// Time of the path at the first measured frame, s.
         #[serde(default)]
         from: f64,
         /// Time from frame to frame, s.
@@ -84,12 +78,12 @@ pub enum Motion {
     },
     /// A parameter of the method's graph.
     Parameter {
-        /// Name of the parameter.
         name: String,
-        /// What a number or vector grows by, a frame.
+        /// Step of a number or vector per frame.
         #[serde(default)]
         step: Option<RawText>,
-        /// Instead of a step: the values of the measured frames. The first holds before, the last after them.
+        /// Values of the measured frames instead of a step. The first also holds before them, the
+        /// last after them.
         #[serde(default)]
         values: Vec<RawText>,
     },
@@ -99,21 +93,19 @@ fn one() -> (f32, f32, f32) {
     (1.0, 1.0, 1.0)
 }
 
-/// What a camera's lengths are counted in.
+/// Unit of a camera's lengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Unit {
-    /// Metres.
     #[default]
     Metres,
-    /// Edges of the method's own level-0 cell at the camera: the graph declares its `voxels`.
+    /// Edges of the method's level-0 cell at the camera. The graph must declare its `voxels`.
     Voxels,
 }
 
 /// State of the scene at a frame: two frames with equal states have the same reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameState {
-    /// The camera.
     pub camera: PlacedCamera,
     /// Time of the scene, s.
     pub time: f64,
@@ -124,15 +116,12 @@ pub struct FrameState {
 }
 
 impl Motion {
-    /// What is wrong with its numbers, or with them in a scene.
-    ///
-    /// # Errors
-    /// The text for the user.
+    /// Checks the numbers, also against the scene.
     pub fn check(&self, scene: &Scene) -> Result<(), String> {
         let numbers: Vec<f64> = match self {
             Motion::Cut { at: 0, .. } => return Err("a cut has a frame `at` of 1 or more".into()),
             Motion::Path { from, step, .. } => vec![*from, *step],
-            // A parameter's values are checked with its graph, a camera with its scene.
+            // The graph checks values of parameters, the scene checks cameras.
             Motion::Still | Motion::Parameter { .. } | Motion::Cut { .. } => vec![],
             Motion::Camera {
                 dolly,
@@ -183,7 +172,7 @@ impl Motion {
         }
     }
 
-    /// The scene with its actors as large as the motion says.
+    /// The scene with its actors at the size of the motion.
     pub fn scaled_scene(&self, scene: &Scene) -> Option<Scene> {
         let Motion::Actors { scale, .. } = self else {
             return None;
@@ -198,7 +187,7 @@ impl Motion {
         Some(scene)
     }
 
-    /// The cells' edge is asked for.
+    /// Whether the motion needs the cell edge.
     pub fn in_voxels(&self) -> bool {
         matches!(
             self,
@@ -209,7 +198,7 @@ impl Motion {
         )
     }
 
-    /// The first frame after something happened at once, counted from the first measured one.
+    /// The first frame after a sudden change, counted from the first measured one.
     pub fn event(&self) -> Option<usize> {
         match self {
             Motion::Switch { at, .. } | Motion::Cut { at, .. } => Some(*at),
@@ -217,7 +206,7 @@ impl Motion {
         }
     }
 
-    /// Time from frame to frame as the method gets it, s.
+    /// Time step of the method, s.
     pub fn delta(&self) -> f64 {
         if let Motion::Actors { step, .. } = self {
             *step
@@ -226,13 +215,13 @@ impl Motion {
         }
     }
 
-    /// Frame `number`, where 0 is the first measured one and those before are negative: what moves has moved before. `cell`
-    /// is the edge of a cell, m.
+    /// State of frame `number`. Frame 0 is the first measured one; frames before it are negative
+    /// and move too. `cell` is the edge of a cell, m.
     pub fn frame_state(&self, start: &FrameState, number: i64, cell: f32) -> FrameState {
         let n = number as f32;
         let mut state = start.clone();
         if number == 0 && !matches!(self, Motion::Switch { .. }) {
-            // To the bit: cases that begin alike share a reference.
+            // Exactly equal, so that cases with the same start share a reference.
             return state;
         }
         match self {
@@ -283,7 +272,7 @@ impl Motion {
         state
     }
 
-    /// The motion in a few words.
+    /// Short description of the motion.
     pub fn describe(&self) -> String {
         match self {
             Motion::Still => "still".into(),

@@ -1,4 +1,5 @@
-//! The page: tables, charts and the worst frames. It needs no network; pictures lie beside it.
+//! The page: tables, charts and worst frames. It needs no network; its pictures are files of the
+//! folder.
 
 use super::chart::Chart;
 use super::plot::Plot;
@@ -79,7 +80,7 @@ fn worst(record: &CaseRecord) -> Markup {
     }
 }
 
-/// A row for each method; columns that nobody has are left out.
+/// A row for each method, without empty columns.
 fn table(part: &str, records: &[&CaseRecord]) -> Markup {
     let mut table = Table::new(records);
     table.column(part, |r| r.about.method.clone());

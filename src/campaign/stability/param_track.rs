@@ -1,12 +1,11 @@
-//! A parameter that moves from frame to frame.
+//! A parameter that changes from frame to frame.
 
 use super::motion::Motion;
 use crate::graph::param::{Param, Params, Value};
 
-/// The values of a moving parameter, frame by frame.
+/// Values of a moving parameter by frame.
 #[derive(Clone, Debug)]
 pub struct ParamTrack {
-    /// Name of the parameter.
     pub name: String,
     start: Value,
     steps: Steps,
@@ -21,11 +20,8 @@ enum Steps {
 }
 
 impl ParamTrack {
-    /// The values of a motion's parameter over `warmup` frames and `frames` measured ones. `None` for a motion that
-    /// moves no parameter.
-    ///
-    /// # Errors
-    /// No such parameter, one that is not only read by shaders, values that it cannot have: the text for the user.
+    /// Values of a motion's parameter over `warmup` frames and `frames` measured ones. `None` for
+    /// other motions.
     pub fn of(
         motion: &Motion,
         params: &Params,
@@ -36,7 +32,7 @@ impl ParamTrack {
             return Ok(None);
         };
         let mut own = params.clone();
-        // The graph's own message, with the nearest name.
+        // The graph's message suggests the nearest name.
         let (Some(param), Some(start)) = (params.param(name), params.get(name)) else {
             return Err(own.set(name, "0").err().unwrap_or_default());
         };
@@ -72,7 +68,7 @@ impl ParamTrack {
         Ok(Some(track))
     }
 
-    /// The value at a frame; see [`Motion::frame_state`].
+    /// The value at a frame, see [`Motion::frame_state`].
     pub fn at(&self, number: i64) -> Value {
         match (&self.steps, &self.start) {
             (Steps::Values(list), _) => {
@@ -94,7 +90,7 @@ impl ParamTrack {
     }
 }
 
-/// A step: a value of the parameter's kind, without its range.
+/// Step in the parameter's kind. Its range does not apply.
 fn numbers(param: &Param, text: &str) -> Result<Vec<f64>, String> {
     let free = Param {
         range: None,

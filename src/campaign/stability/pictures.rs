@@ -7,7 +7,7 @@ use crate::metrics::{Kind, Linear};
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
-/// Panels are at least so wide, pixels; small ones are enlarged without smoothing.
+/// Least width of a panel, pixels. Smaller pictures are enlarged without smoothing.
 const WIDTH: usize = 240;
 /// White between panels, pixels.
 const GAP: usize = 4;
@@ -20,8 +20,8 @@ pub(super) struct Panels {
 }
 
 impl Panels {
-    /// Of radiance: what was before, what is, the reference, and the difference: of the changes where there is a frame
-    /// before, of the pictures otherwise.
+    /// Frame before, frame, reference and difference, as radiance. With a frame before, the
+    /// difference is between the changes, otherwise between the pictures.
     pub fn new(before: Option<&Linear>, x: &Linear, known: Known) -> Panels {
         let (reference, reference_before) = match known {
             Known::Reference { now, before } => (Some(&now.mean), before.map(|b| &b.mean)),
@@ -65,7 +65,7 @@ impl Panels {
         }
     }
 
-    /// What they are, from the left.
+    /// Names of the panels, from the left.
     pub fn names(&self) -> Vec<String> {
         let last = if self.pictures[0].0 == "the frame before" {
             "change against the reference's"
@@ -80,12 +80,12 @@ impl Panels {
             .collect()
     }
 
-    /// What full red (brighter) and blue (darker) stand for, 1/255.
+    /// Value of full red (brighter) and blue (darker), 1/255.
     pub fn full(&self) -> f64 {
         255.0 * self.difference.iter().map(|d| d.abs()).fold(0.0, f64::max)
     }
 
-    /// All in one row, PNG.
+    /// The panels in one row, PNG.
     pub fn png(&self) -> Result<Vec<u8>, LabError> {
         let most = (self.full() / 255.0).max(1e-9);
         let signed = |d: &f64| {

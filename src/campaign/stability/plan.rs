@@ -1,4 +1,5 @@
-//! Every method in every case, as something to run, with the number of all that its result depends on.
+//! Jobs of a suite: every method in every case, with the identifier of everything that a result
+//! depends on.
 
 use super::cameras::Cameras;
 use super::case::{Case, Method};
@@ -19,62 +20,56 @@ use crate::scene::Scene;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Most values that a case keeps, pixels times frames times parts: 4 bytes each, and as many for the references.
+/// Largest number of values in memory: pixels times frames times parts, 4 bytes each, and the same
+/// for the references.
 const MAX_VALUES: u64 = 1 << 28;
 
-/// How a suite is run.
+/// Options of a run.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Where everything is kept.
+    /// Folder of the results.
     pub folder: PathBuf,
     /// Another size of the pictures.
     pub size: Option<(u32, u32)>,
-    /// Settings over all others, NAME=VALUE; of parameters, those that a method's graph has.
+    /// Settings over all others, NAME=VALUE. Graphs without such a parameter skip it.
     pub set: Vec<String>,
-    /// Frames of cases that do not say themselves.
+    /// Frames of cases without a fixed number.
     pub frames: Option<usize>,
     /// Samples a pixel of the references, instead of the suite's.
     pub samples: Option<u64>,
     /// Whether there are references.
     pub reference: bool,
-    /// Names of the cases that are run; all when empty.
+    /// Names of the cases to run, all if empty.
     pub only: Vec<String>,
 }
 
 /// A method in a case.
 #[derive(Clone)]
 pub struct Job {
-    /// 32 hexadecimal digits: SHA-256 of graph, shaders, parameters, scene, camera, size, time, motion, frames, samples and
-    /// device.
+    /// 32 hexadecimal digits: SHA-256 of graph, shaders, parameters, scene, camera, size, time,
+    /// motion, frames, samples and device.
     pub id: String,
-    /// The same of what is run, without names and what it is compared with.
+    /// The same hash without names and references.
     pub work: String,
-    /// The method.
     pub method: String,
-    /// The case.
     pub case: Case,
-    /// The experiment that is run.
     pub experiment: Experiment,
-    /// The scene, lit as the experiment says.
+    /// The scene with the experiment's light.
     pub scene: Arc<Scene>,
-    /// Its content as a number.
+    /// SHA-256 of its content.
     pub scene_hash: String,
-    /// Camera, time and light before anything moved.
+    /// Camera, time and light before the motion starts.
     pub start: FrameState,
-    /// Cameras that do not move on from the start.
+    /// Cameras that do not continue from the start.
     pub cameras: Option<Cameras>,
     /// The parameter that moves.
     pub track: Option<ParamTrack>,
-    /// Whether the graph of references has it too, so that the reference moves with it.
+    /// Whether the graph of references has the parameter too, so that the reference moves with it.
     pub reference_moves: bool,
-    /// Frames measured.
     pub frames: usize,
 }
 
 /// Everything that a suite runs, case by case.
-///
-/// # Errors
-/// All that is wrong with its settings, scenes and motions: nothing is measured then.
 pub fn plan(runner: &mut Runner, suite: &Suite, options: &Options) -> Result<Vec<Job>, LabError> {
     if let Some(name) = options
         .only
@@ -88,7 +83,7 @@ pub fn plan(runner: &mut Runner, suite: &Suite, options: &Options) -> Result<Vec
             known.join(", ")
         )));
     }
-    // What the frames are compared with is part of a result.
+    // The shaders of the reference are part of the result.
     let shaders = if options.reference {
         reference::shaders(&runner.lab.home)?
     } else {
@@ -226,7 +221,7 @@ fn job(
         "{samples:?} {} {} {} {} {shaders}",
         suite.bounces, suite.seed, case.voxels, suite.pictures
     );
-    // Two names of the same thing are two rows.
+    // Equal jobs with different names are two rows.
     let names = format!("{:?} {:?} {:?}", method.name, case.name, case.variant);
     let id = content_id([&work, &asked, &names], DIGITS);
     Ok(Job {
@@ -281,7 +276,7 @@ impl runner::Job for Job {
 }
 
 impl Job {
-    /// What frame `number` sees; see [`super::Motion::frame_state`].
+    /// State of frame `number`, see [`super::motion::Motion::frame_state`].
     pub fn frame_state(&self, number: i64, cell: f32) -> FrameState {
         let setting = self
             .track

@@ -11,30 +11,30 @@ use maud::{Markup, html};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-/// A panel, pixels.
+/// Size of a panel, pixels.
 const PANEL: (u32, u32) = (620, 500);
 /// Height of a dot's label, pixels.
 const LABEL: i32 = 16;
-/// Values that spread by more than this factor get a logarithmic axis.
+/// Ratio of values above which an axis is logarithmic.
 const SPREAD: f64 = 8.0;
 
-/// A value with the same between the halves of the reference.
+/// A value and its noise: the same metric between the halves of the reference.
 #[derive(Clone, Copy)]
 struct Score {
     value: f64,
     noise: f64,
-    /// The value without what a reference of that noise adds to it on average.
+    /// The value without the mean contribution of the reference's noise.
     without: f64,
 }
 
 /// A method in a group.
 struct Row {
     method: String,
-    /// The value that was chosen for the method.
+    /// Value that was chosen for the method.
     setting: String,
     ms: Option<f64>,
     ratio: Option<f64>,
-    /// Whether the method was to be as fast as the first, and is not.
+    /// Whether the method misses the first method's time although it has to match it.
     off: bool,
     memory_bytes: Option<u64>,
     error: Option<Score>,
@@ -45,15 +45,12 @@ struct Row {
 pub(super) struct Plot<'a> {
     spec: &'a CostChart,
     groups: Vec<(String, Vec<Row>)>,
-    /// Panels side by side; none where no method has both values.
+    /// Panels side by side, `None` if no method has both values.
     pub svg: Option<String>,
 }
 
 impl Plot<'_> {
     /// From the results of a suite.
-    ///
-    /// # Errors
-    /// Drawing into memory gives none, whatever the results.
     pub fn new<'a>(report: &Report, spec: &'a CostChart) -> Result<Plot<'a>, LabError> {
         let rows = |list: &[String]| list.iter().map(|m| row(report, spec, m)).collect();
         let groups: Vec<(String, Vec<Row>)> = spec
@@ -180,7 +177,8 @@ fn row(report: &Report, spec: &CostChart, method: &str) -> Row {
             .zip(ratio)
             .is_some_and(|(t, r)| (r - 1.0).abs() > t),
         memory_bytes: taken.map(|c| c.memory_bytes),
-        // The halves differ by four times the variance of their mean (half the samples each, and two of them).
+        // The difference of the halves has four times the variance of their mean: each has half the
+        // samples, and there are two.
         error: values(report, spec, &spec.error, method, |p| {
             Some((p.scores.as_ref()?.get(RELMSE), p.noise?))
         })
@@ -211,7 +209,8 @@ fn row(report: &Report, spec: &CostChart, method: &str) -> Row {
     }
 }
 
-/// A method's values in all variants of some cases; none if one is missing: a mean over other cases is another number.
+/// Values of a method in all variants of some cases. `None` if one is missing, because a mean over
+/// other cases is not comparable.
 fn values(
     report: &Report,
     spec: &CostChart,
@@ -236,7 +235,7 @@ fn values(
     Some(list)
 }
 
-/// An axis from the least to the greatest of some values.
+/// Axis over the range of some values.
 fn axis(title: &str, values: impl Iterator<Item = f64> + Clone) -> Axis {
     let most = values.clone().fold(0.0, f64::max);
     let least = values.filter(|v| *v > 0.0).fold(f64::INFINITY, f64::min);
@@ -255,7 +254,7 @@ fn dots(rows: &[Row]) -> Vec<Dot<'_>> {
     rows.iter().enumerate().filter_map(dot).collect()
 }
 
-/// A panel a group, on equal axes; a colour for each place in a group.
+/// One panel per group, on equal axes. Colours follow the order in a group.
 fn draw(spec: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String>, LabError> {
     let all: Vec<Dot> = groups.iter().flat_map(|g| dots(&g.1)).collect();
     if all.is_empty() {
@@ -295,7 +294,8 @@ fn draw(spec: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String
                     Circle::new(at, 5, inside),
                     Circle::new(at, 5, color.stroke_width(2)),
                 ])?;
-                // Labels stand beside their dots, on the left above the bar, and below those of dots that are close.
+                // Labels are next to their dots: on the left above the bar, and below labels of
+                // close dots.
                 let dot = chart.backend_coord(&at);
                 let (left, width) = (panel.get_pixel_range().0.start, panel.dim_in_pixel().0);
                 let right = dot.0 - left < i32::try_from(width)? * 2 / 3;

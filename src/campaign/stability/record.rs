@@ -1,4 +1,5 @@
-//! What a suite leaves: `results/ID.json`, one finished method in one case each, and `stability.json`, all of them.
+//! Files of a suite: `results/ID.json` for each finished method in a case, and `stability.json` for
+//! all of them.
 
 use super::score::{Change, Flicker, Step, median};
 use crate::campaign::record::{Folder, Record};
@@ -18,13 +19,13 @@ const MAX_FILE: u64 = 64 << 20;
 /// A part of the light at a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrameScore {
-    /// From 0, the first measured one.
+    /// Number, from 0 at the first measured frame.
     pub frame: usize,
-    /// Against the frame before; none at the first, and where the reference's change is not known.
+    /// Against the frame before. `None` at the first frame, and if the reference's change is
+    /// unknown.
     pub change: Option<Change>,
     /// E_t between the two halves of the reference.
     pub noise: Option<f64>,
-    /// Mean luminance.
     pub mean: Option<f64>,
     /// Mean luminance of the reference.
     pub reference_mean: Option<f64>,
@@ -45,28 +46,26 @@ pub struct PartResult {
     pub pops: Option<f64>,
     /// The largest displayed jump of a frame, 1/255.
     pub jump: Option<f64>,
-    /// Flicker index.
     pub flicker: Option<Flicker>,
     /// Its mean between the halves of the references.
     pub flicker_noise: Option<f64>,
-    /// What follows a switched light.
+    /// Response to a switched light.
     pub step: Option<Step>,
     /// Frames from a switch or a cut until relMSE stays within 5 % of its last value.
     #[serde(default)]
     pub settling: Option<usize>,
-    /// The last frame against its reference.
+    /// Scores of the last frame.
     pub scores: Option<Scores>,
-    /// relMSE between the halves of that reference.
+    /// relMSE between the halves of the last reference.
     pub noise: Option<f64>,
-    /// Structure error that the noise of that reference alone gives, natural log units.
+    /// Structure error due to the noise of the last reference, natural log units.
     #[serde(default)]
     pub structure_noise: Option<f64>,
-    /// Frame by frame.
     pub frames: Vec<FrameScore>,
 }
 
 impl PartResult {
-    /// The noise of the last frame's reference; no number where it is not known.
+    /// Noise of the last reference, NaN if unknown.
     pub fn reference_noise(&self) -> Noise {
         let known = |v: Option<f64>| v.unwrap_or(f64::NAN);
         Noise {
@@ -76,16 +75,16 @@ impl PartResult {
     }
 }
 
-/// The frame that is farthest from its reference.
+/// The frame farthest from its reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Worst {
     /// The part of the light.
     pub part: String,
     /// Number of the frame.
     pub frame: usize,
-    /// What the panels of its picture show, from the left.
+    /// Content of the picture's panels, from the left.
     pub panels: Vec<String>,
-    /// What full red and blue of the difference stand for, 1/255.
+    /// Value of full red and blue in the difference, 1/255.
     pub full: f64,
 }
 
@@ -94,21 +93,21 @@ pub struct Worst {
 pub struct Measured {
     /// Median of the frames' time on the device, ms.
     pub frame_ms: f64,
-    /// Bytes of all resources of the graph, with the parts of the light that a picture alone does not need.
+    /// Bytes of all resources of the graph, including parts of the light that the picture does not
+    /// need.
     #[serde(default)]
     pub memory_bytes: u64,
-    /// Samples a pixel of the references; 0 without.
+    /// Samples per pixel of the references, 0 without.
     pub samples: u64,
     /// The first frame after a switch or a cut.
     #[serde(default)]
     pub event: Option<usize>,
-    /// By part.
     pub parts: BTreeMap<String, PartResult>,
-    /// Voxels of the last frame against exact ones.
+    /// Comparison of the last frame's voxels with exact ones.
     pub voxels: Option<Score>,
-    /// The farthest frame of the suite's part for pictures; its picture is `pictures/ID.png`.
+    /// The worst frame of the suite's part for pictures, with its picture in `pictures/ID.png`.
     pub worst: Option<Worst>,
-    /// What the graph's checks said, and what could not be had.
+    /// Failed checks of the graph, and missing data.
     pub warnings: Vec<String>,
 }
 
@@ -119,55 +118,51 @@ pub struct About {
     pub case: String,
     /// Name of its variant, empty if it has none.
     pub variant: String,
-    /// About the case, for people.
+    /// Description of the case.
     #[serde(rename = "about")]
     pub text: String,
-    /// What moves.
     pub motion: String,
     /// Name of the method.
     pub method: String,
-    /// Scene.
     pub scene: String,
     /// Width and height, pixels.
     pub size: [u32; 2],
     /// Frames before the measured ones.
     pub warmup: usize,
-    /// Frames measured.
     pub frames: usize,
 }
 
 /// The result of a method in a case.
 pub type CaseRecord = Record<About, Measured>;
 
-/// A method at one value of the parameter.
+/// A method at one value of the varied parameter.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
-    /// The value, RON; empty where nothing is varied.
+    /// Value in RON, empty if no parameter is varied.
     pub value: String,
-    /// Identifier of its work ([`super::Job::work`]).
+    /// Identifier of its work ([`super::plan::Job::work`]).
     pub work: String,
     /// Sum of a frame's passes, ms: the median of each round.
     pub ms: Vec<f64>,
-    /// The first method's in the same rounds.
+    /// Times of the first method in the same rounds, ms.
     pub first_ms: Vec<f64>,
     /// Bytes of all resources of the graph.
     pub memory_bytes: u64,
-    /// Why it could not be timed.
+    /// Error that prevented timing.
     pub failed: Option<String>,
 }
 
-/// What a method costs.
+/// Cost of a method.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
-    /// The method.
     pub method: String,
-    /// What is varied; empty where nothing is.
+    /// Varied parameter, empty if there is none.
     pub parameter: String,
-    /// Identifier of the work ([`super::Job::work`]) of the first method.
+    /// Identifier of the work ([`super::plan::Job::work`]) of the first method.
     pub first: String,
-    /// At every value, or the method as it is.
+    /// Candidates by value, or the method unchanged.
     pub candidates: Vec<Candidate>,
-    /// The one that is nearest to the first method's time.
+    /// Index of the candidate with the time nearest to the first method's.
     pub chosen: Option<usize>,
 }
 
@@ -176,29 +171,28 @@ pub struct Cost {
 pub struct Report {
     /// `SCHEMA`.
     pub schema: String,
-    /// Program version.
     pub version: String,
     /// Name of the suite.
     pub suite: String,
     /// Text of the suite's file.
     pub text: String,
-    /// Samples a pixel and bounces of the references; none without.
+    /// Samples per pixel and bounces of the references, `None` without.
     pub reference: Option<(u64, u32)>,
-    /// Parts of the light that have tables on the page; the others are in the files.
+    /// Parts of the light with tables on the page. The files have all parts.
     #[serde(default)]
     pub tables: Vec<String>,
-    /// The part that has charts besides the total: its name, and that within a sentence.
+    /// The part with charts next to the total: its name, and its name within a sentence.
     #[serde(default)]
     pub focus: Option<(String, String)>,
-    /// What charted methods cost; empty without a chart.
+    /// Costs of charted methods, empty without a chart.
     #[serde(default)]
     pub costs: Vec<Cost>,
-    /// Every method in every case, in order.
+    /// Results of every method in every case, in order.
     pub results: Vec<CaseRecord>,
 }
 
 impl Report {
-    /// The results case by case, by their titles.
+    /// Results by title of the case.
     pub fn cases(&self) -> Vec<(String, Vec<&CaseRecord>)> {
         let mut cases: Vec<(String, Vec<&CaseRecord>)> = Vec::new();
         for record in &self.results {
@@ -218,7 +212,7 @@ impl Candidate {
         (!self.ms.is_empty()).then(|| median(self.ms.clone()))
     }
 
-    /// Its time over that of the first method: median of the rounds' ratios.
+    /// Ratio to the time of the first method: median of the rounds.
     pub fn ratio(&self) -> Option<f64> {
         let ratios: Vec<f64> = self
             .ms
@@ -233,7 +227,6 @@ impl Candidate {
 }
 
 impl Cost {
-    /// The one that was taken.
     pub fn taken(&self) -> Option<&Candidate> {
         self.candidates.get(self.chosen?)
     }
@@ -247,13 +240,13 @@ impl About {
 }
 
 impl CaseRecord {
-    /// What was measured of a part of the light.
+    /// Result of a part of the light.
     pub fn part(&self, name: &str) -> Option<&PartResult> {
         self.done()?.parts.get(name)
     }
 }
 
-/// A case with its variant, for people.
+/// Title of a case with its variant.
 pub(super) fn title(case: &str, variant: &str) -> String {
     if variant.is_empty() {
         case.into()

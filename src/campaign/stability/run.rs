@@ -1,4 +1,4 @@
-//! Running a suite: every method in every case, one after another, each kept as soon as it is finished.
+//! Runs a suite: every method in every case. Each result is recorded at once.
 
 use super::chart_spec::CostChart;
 use super::file::Suite;
@@ -13,11 +13,8 @@ use crate::campaign::runner::{Counts, Open, Progress, Runner};
 use crate::lab::{LabError, focus_of, parts_of};
 use crate::metrics::Kind;
 
-/// Runs what is not finished of a suite, and writes tables, charts and the page of all of it. An error that belongs to a
-/// method in a case is kept in its place; it is tried again by the next run.
-///
-/// # Errors
-/// What is wrong with the suite as a whole, before anything is measured; a folder that cannot be written to; no device.
+/// Runs the open cases of a suite, then writes its tables, charts and page. Errors of a method in a
+/// case are recorded; the next run tries these again.
 pub fn run(
     open: &Open,
     open_scene: &OpenScene,
@@ -40,7 +37,7 @@ pub fn run(
         bounces: suite.bounces,
         seed: suite.seed,
     });
-    // What has failed is tried again, and so is what has lost its picture.
+    // Failed cases run again, and cases without their picture.
     let mut kept = |_: &mut Runner, job: &Job| {
         let whole = |r: &CaseRecord| {
             r.done()

@@ -1,27 +1,29 @@
-//! The definitions, on pictures and sequences at hand; docs/stability.md explains them with their sources.
+//! Definitions of the scores; docs/stability.md has their sources.
 
 use crate::metrics::Linear;
 use crate::metrics::colour::{display, luminance};
 use serde::{Deserialize, Serialize};
 
-/// What is near enough to the final value after a step.
+/// Largest deviation that counts as the final value after a step, relative to the step.
 const SETTLED: f64 = 0.05;
-/// Largest change from the last frame but one to the last that still counts as the end, part of the step.
+/// Largest change between the last two frames that counts as converged, relative to the step.
 const AT_REST: f64 = 0.01;
 
-/// How a picture changed from one frame to the next, against how it should have.
+/// Change from one frame to the next, against the change of the reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Change {
-    /// E_t: root of mean ((x_t - x_{t-1}) - (r_t - r_{t-1}))^2 over pixels and channels, of linear radiance.
+    /// E_t: root of mean ((x_t - x_{t-1}) - (r_t - r_{t-1}))^2 over pixels and channels, of linear
+    /// radiance.
     pub rms: f64,
-    /// The 99.9th percentile over pixels of the same, of each pixel's largest channel, absolute.
+    /// 99.9th percentile over pixels of the same difference: the largest channel of each pixel,
+    /// absolute.
     pub p999: f64,
-    /// The largest over pixels and channels of the same after [`display`], in 1/255.
+    /// Largest value over pixels and channels of the same difference after [`display`], in 1/255.
     pub jump: f64,
 }
 
-/// The change between two frames `x`, less that of their references `r`; none stands for references that are equal.
-/// Pixels that are no number in any of them are left out.
+/// The change between two frames `x`, minus that of their references `r`. `None` means equal
+/// references. Pixels that are not finite in any of them are skipped.
 pub fn change(x: [&Linear; 2], r: Option<[&Linear; 2]>) -> Change {
     let [before, now] = x;
     let (mut sum, mut count, mut jump) = (0.0, 0usize, 0.0f64);
@@ -51,7 +53,7 @@ pub fn change(x: [&Linear; 2], r: Option<[&Linear; 2]>) -> Change {
     }
 }
 
-/// The least value that is not less than this part of all: nearest rank. 0 of nothing.
+/// Percentile by nearest rank, 0 without values.
 pub(super) fn percentile(values: &mut [f64], part: f64) -> f64 {
     if values.is_empty() {
         return 0.0;
@@ -60,7 +62,8 @@ pub(super) fn percentile(values: &mut [f64], part: f64) -> f64 {
     *values.select_nth_unstable_by(rank - 1, f64::total_cmp).1
 }
 
-/// Flicker index over the frames of a sequence (IES Lighting Handbook): area above the mean over the whole area.
+/// Flicker index over the frames of a sequence (IES Lighting Handbook): area above the mean over
+/// the whole area.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flicker {
     /// Mean over pixels, 0 to 1.
@@ -69,9 +72,10 @@ pub struct Flicker {
     pub p99: f64,
 }
 
-/// The flicker index of every pixel's luminance, less the reference's own change: of y_t = x_t - (r_t - r_0), whose
-/// area is taken to be that of x. `differences` holds (x_t - x_0) - (r_t - r_0) of every pixel, frame by frame; `areas`
-/// the sum of x over the frames. Where nothing moves y is x, and the index is the usual one.
+/// The flicker index of every pixel's luminance without the reference's own change: of y_t = x_t -
+/// (r_t - r_0), with the area of x. `differences` has (x_t - x_0) - (r_t - r_0) of every pixel by
+/// frame, `areas` the sums of x over the frames. For a constant reference, y is x and the index is
+/// the usual one.
 pub fn flicker(differences: &[Vec<f32>], areas: &[f64]) -> Flicker {
     let frames = differences.len() as f64;
     let index = |(i, area): (usize, &f64)| {
@@ -96,7 +100,7 @@ pub fn flicker(differences: &[Vec<f32>], areas: &[f64]) -> Flicker {
     }
 }
 
-/// What [`flicker`] takes, gathered frame by frame.
+/// Input of [`flicker`], frame by frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FlickerSeries {
     first: Vec<(f64, f64)>,
@@ -105,7 +109,7 @@ pub(super) struct FlickerSeries {
 }
 
 impl FlickerSeries {
-    /// Adds a frame; without a reference it is taken to stand still.
+    /// Adds a frame. Without a reference, the reference is constant.
     pub fn add(&mut self, x: &Linear, r: Option<&Linear>) {
         let finite = |v: f64| if v.is_finite() { v } else { 0.0 };
         let pair = |i: usize| {
@@ -131,18 +135,18 @@ impl FlickerSeries {
     }
 }
 
-/// What follows a step change.
+/// Response to a step change.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Step {
-    /// Frames, the first changed one included, until the signal stays within 5 % of the step of its final value: 1 is at
-    /// once. None where it still moved at the end.
+    /// Frames until the signal stays within 5 % of the step around its final value. The first
+    /// changed frame counts, so 1 is immediate. `None` if it still moved at the end.
     pub frames: Option<usize>,
-    /// How far it went beyond its final value, part of the step; 0 where it did not.
+    /// Overshoot beyond the final value, relative to the step.
     pub overshoot: f64,
 }
 
-/// The step of a signal whose frame `at` is the first changed one. Its final value is that of the last frame. None
-/// without a frame before and two after it, or where before and after are equal.
+/// The step response of a signal; its first changed frame is `at`. The final value is that of the
+/// last frame. `None` without a frame before and two after it, or if there is no step.
 pub fn step(signal: &[f64], at: usize) -> Option<Step> {
     let before = *signal.get(at.checked_sub(1)?)?;
     let after = signal.get(at..).filter(|a| a.len() >= 2)?;
@@ -161,8 +165,9 @@ pub fn step(signal: &[f64], at: usize) -> Option<Step> {
     })
 }
 
-/// Frames, that of the event included, until an error stays within 5 % of its last value: 1 is at once. None without two
-/// frames after it, where an error is not known, and where it still moved by more than 1 % at the end.
+/// Frames until an error stays within 5 % of its last value. The frame of the event counts, so 1 is
+/// immediate. `None` without two frames after it, if an error is unknown, or if it still moved by
+/// more than 1 % at the end.
 pub fn settling(errors: &[f64], at: usize) -> Option<usize> {
     let after = errors
         .get(at..)
@@ -173,7 +178,7 @@ pub fn settling(errors: &[f64], at: usize) -> Option<usize> {
     within(after[after.len() - 2], AT_REST).then(|| late.map_or(1, |l| l + 2))
 }
 
-/// The median; of an even number of values the upper one of the two in the middle.
+/// The median. For an even number of values, the upper one of the middle two.
 pub(super) fn median(mut list: Vec<f64>) -> f64 {
     list.sort_by(f64::total_cmp);
     list.get(list.len() / 2).copied().unwrap_or(0.0)

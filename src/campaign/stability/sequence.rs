@@ -1,4 +1,4 @@
-//! A method in a case: its frames one after another, each with its reference.
+//! Frames of a method in a case, each with its reference.
 
 use super::motion::{FrameState, Motion};
 use super::pictures::Panels;
@@ -27,15 +27,15 @@ pub(super) struct Tracing {
     pub seed: u32,
 }
 
-/// A frame that may be the worst.
+/// A candidate for the worst frame.
 struct Bad {
     frame: usize,
     bad: f64,
     panels: Panels,
 }
 
-/// Runs a job, and scores each part of its light frame by frame; `pictures` names the part whose worst frame is kept as a
-/// picture.
+/// Runs a job and scores each part of its light by frame. The worst frame of the part `pictures`
+/// becomes a picture.
 pub(super) fn measure(
     runner: &mut Runner,
     job: &Job,
@@ -215,7 +215,7 @@ fn reference_of(
     runner.reference(&experiment, &scene, &subject, wanted)
 }
 
-/// What is known of a part's reference; `earlier` is that of the frame before.
+/// The references of a part; `earlier` is that of the frame before.
 fn known<'a>(
     part: &str,
     reference: Option<&'a Reference>,
@@ -232,7 +232,7 @@ fn known<'a>(
     }
 }
 
-/// The least edge of the method's cell at the camera, m, if its motion asks for it.
+/// Smallest edge of the method's cell at the camera, m, if the motion needs it.
 pub(super) fn cell_of(session: &mut Session, job: &Job) -> Result<f32, LabError> {
     if !job.case.motion.in_voxels() {
         return Ok(0.0);
@@ -244,7 +244,8 @@ pub(super) fn cell_of(session: &mut Session, job: &Job) -> Result<f32, LabError>
     Ok(edges.min_element() as f32)
 }
 
-/// Makes frame `number` of a job the session's next one. `lights` are those that the session has.
+/// Prepares frame `number` of a job as the session's next one. `lights` are the session's current
+/// ones.
 pub(super) fn place(
     lab: &Lab,
     session: &mut Session,
@@ -270,7 +271,8 @@ pub(super) fn place(
     Ok(state)
 }
 
-/// The voxels of the last frame against exact ones, if the case asks for it and the method can.
+/// Compares the last frame's voxels with exact ones, if the case has that and the method makes
+/// voxels.
 fn voxels(
     session: &mut Session,
     job: &Job,

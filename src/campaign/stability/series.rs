@@ -1,4 +1,4 @@
-//! A part of the light, frame by frame against its reference.
+//! Scores of a part of the light by frame.
 
 use super::record::{FrameScore, PartResult};
 use super::score::{FlickerSeries, change, settling, step};
@@ -6,12 +6,12 @@ use crate::measure::reference::ReferencePart;
 use crate::metrics::colour::luminance;
 use crate::metrics::{Compared, Linear, relmse, within_noise};
 
-/// What is known of the reference at a frame.
+/// Available references at a frame.
 #[derive(Clone, Copy)]
 pub(super) enum Known<'a> {
-    /// Nothing; whether it may have changed since the frame before.
+    /// No reference; whether it may have changed since the frame before.
     Nothing { changed: bool },
-    /// The reference now, and at the frame before where it is another one.
+    /// The reference now, and that of the frame before if it differs.
     Reference {
         now: &'a ReferencePart,
         before: Option<&'a ReferencePart>,
@@ -24,7 +24,7 @@ pub(super) struct PartSeries {
     frames: Vec<FrameScore>,
     flicker: FlickerSeries,
     noise: FlickerSeries,
-    /// The reference's changes are known at every frame so far.
+    /// Whether the reference's changes are known at all frames.
     known: bool,
     result: PartResult,
 }
@@ -41,8 +41,8 @@ impl PartSeries {
         }
     }
 
-    /// Adds the next frame; `last`: the whole of its scores against the reference is wanted. Gives E_t, or relMSE at the
-    /// first frame: how bad it is.
+    /// Adds the next frame. `last` requests all scores against the reference. Returns E_t, or
+    /// relMSE at the first frame.
     pub fn add(&mut self, x: Linear, known: Known, last: bool) -> Option<f64> {
         let reference = match known {
             Known::Reference { now, .. } => Some(now),
@@ -106,7 +106,8 @@ impl PartSeries {
         self.before.as_ref()
     }
 
-    /// The scores of all frames; `event` is the first frame after a switch or a cut, `switched` says which.
+    /// Scores of all frames. `event` is the first frame after a switch or a cut, `switched` tells
+    /// them apart.
     pub fn finish(mut self, event: Option<usize>, switched: bool) -> PartResult {
         let changes: Vec<_> = self.frames.iter().filter_map(|f| f.change).collect();
         let root =
@@ -134,7 +135,7 @@ impl PartSeries {
                     .map(|f| value(f).unwrap_or(f64::NAN))
                     .collect()
             };
-            // Another view has another mean: that is no step of the method's.
+            // A cut changes the mean by itself, so it is no step response.
             self.result.step = if switched {
                 step(&signal(|f| f.mean), at)
             } else {

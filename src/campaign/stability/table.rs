@@ -1,5 +1,5 @@
-//! A suite's results as comma-separated values (RFC 4180). Columns that end in ` ms` are times and differ from run to run;
-//! everything else is the same on one device.
+//! Results of a suite as comma-separated values (RFC 4180). Columns that end in ` ms` are times and
+//! differ between runs. All others are the same on one device.
 
 use super::record::{CaseRecord, FrameScore, Measured, PartResult, Report};
 use crate::campaign::points::total_first;
@@ -7,15 +7,14 @@ use crate::lab::LabError;
 use crate::metrics::{Best, METRICS};
 use crate::results::table::{Table, cell, mebibytes, number};
 
-/// A number of a part.
 pub(super) type Value = Box<dyn Fn(&PartResult) -> Option<f64>>;
 
-/// A column of every part: title in the table, title on the page if it is there, value.
+/// A column of every part: title in the table, title on the page if it is shown there, value.
 pub(super) type Column = (String, Option<&'static str>, Value);
 
 type Of = fn(&PartResult) -> Option<f64>;
 
-/// What of changes is in every part's columns: titles in the table and on the page.
+/// Columns of changes: title in the table, title on the page, value.
 const CHANGES: [(&str, &str, Of); 10] = [
     ("E_t", "E_t", |p| p.e),
     ("E_t noise", "noise", |p| p.e_noise),
@@ -33,7 +32,7 @@ const CHANGES: [(&str, &str, Of); 10] = [
     }),
 ];
 
-/// The columns of every part: changes, then the scores of the last frame.
+/// Columns of every part: changes, then scores of the last frame.
 pub(super) fn columns() -> Vec<Column> {
     let mut list: Vec<Column> = CHANGES
         .iter()
@@ -57,7 +56,7 @@ pub(super) fn columns() -> Vec<Column> {
     list
 }
 
-/// All parts that results have.
+/// All parts of the results.
 pub(super) fn parts(report: &Report) -> Vec<String> {
     total_first(
         report

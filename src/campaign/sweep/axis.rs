@@ -6,10 +6,10 @@ use crate::diagnostics::{At, Entries, Items, Loc, RawText};
 use crate::scene::splitmix;
 use serde::Deserialize;
 
-/// Most points of a sweep.
+/// Largest number of points of a sweep.
 pub(super) const MAX_POINTS: usize = 20_000;
 
-/// An axis as it stands in the file.
+/// An axis of the file.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) enum Axis {
@@ -60,7 +60,6 @@ pub(super) enum Scale {
 /// The distribution that a sampled setting is drawn from.
 #[derive(Clone, Debug, Deserialize)]
 pub(super) enum Distribution {
-    /// Numbers.
     Uniform(f64, f64),
     /// Numbers above 0, every ratio as likely.
     Log(f64, f64),
@@ -73,7 +72,7 @@ pub(super) enum Distribution {
 /// One choice of an axis.
 #[derive(Clone, Debug)]
 pub(super) struct Choice {
-    /// Name of what is varied, and its value for people.
+    /// Name and value of the varied setting, for labels.
     pub labels: Labels,
     pub settings: Vec<Setting>,
 }
@@ -108,7 +107,7 @@ fn label(setting: &Setting) -> (String, String) {
     (setting.name.value.clone(), bare.to_string())
 }
 
-/// What is wrong, and where, if not with the whole axis.
+/// Place, if not the whole axis, and message.
 type Wrong = (Option<At>, String);
 
 /// The choices of an axis, in order.
@@ -254,8 +253,8 @@ fn sample(count: usize, seed: u64, of: &Entries<Distribution>) -> Result<Vec<Cho
     Ok(samples.into_iter().map(choice).collect())
 }
 
-/// `count` points in the unit cube of `dimensions` dimensions: along every axis each of `count` equal intervals holds
-/// one point (McKay, Beckman and Conover 1979). The same on every machine.
+/// `count` points in the unit cube of `dimensions` dimensions: along every axis each of `count`
+/// equal intervals holds one point (McKay, Beckman and Conover 1979). The same on every machine.
 fn latin_hypercube(count: usize, dimensions: usize, seed: u64) -> Vec<Vec<f64>> {
     let mut state = seed;
     let mut points = vec![Vec::with_capacity(dimensions); count];

@@ -1,4 +1,4 @@
-//! Sweep files: which experiments, and what is varied (docs/sweeps.md).
+//! Sweep files: experiments and varied settings (docs/sweeps.md).
 
 use super::axis::{Axis, Choice, MAX_POINTS, choices};
 use super::points::Sweep;
@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// Most frames of one point.
 const MAX_FRAMES: usize = 100_000;
-/// Frames when nothing is said.
+/// Default frames.
 const DEFAULT_FRAMES: Frames = Frames {
     warmup: 40,
     count: 20,
@@ -34,7 +34,7 @@ struct SweepFile {
     /// Bounces of the references that points are scored against.
     #[serde(default)]
     bounces: Items<u32>,
-    /// What every point sets.
+    /// Settings of every point.
     #[serde(default)]
     set: Entries<RawText>,
     #[serde(default)]
@@ -43,9 +43,6 @@ struct SweepFile {
 
 impl Sweep {
     /// Reads a sweep and the experiments it names.
-    ///
-    /// # Errors
-    /// All mistakes of the file and of the experiments.
     pub fn read(path: &Path) -> Result<Sweep, Vec<Diagnostic>> {
         let (file, mut source) = Source::read::<SweepFile>(
             path,
@@ -110,7 +107,7 @@ impl Sweep {
     }
 }
 
-/// The choices of all axes, and the names of what they vary.
+/// Choices of all axes, and names of the varied settings.
 fn axes(
     list: &Items<Axis>,
     experiments: usize,

@@ -12,11 +12,11 @@ use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Mistakes after which no more points are looked at.
+/// Number of mistakes after which checking ends.
 const MOST_MISTAKES: usize = 20;
 
-/// A point whose model is not on this machine, or cannot be read. Where it can, the point has another number, by the scene's
-/// content.
+/// A point with a model that is missing or unreadable here. On other machines its identifier
+/// depends on the scene's content.
 fn absent(experiment: Experiment, labels: Labels, why: &SceneError) -> SweepPoint {
     let name = Path::new(&experiment.scene)
         .file_stem()
@@ -46,11 +46,9 @@ fn absent(experiment: Experiment, labels: Labels, why: &SceneError) -> SweepPoin
     }
 }
 
-/// All points of a sweep in order, without those that another one equals; and how many those are. A model that is not
-/// on this machine, or damaged, makes its points absent, and no error: suites name scenes that not everybody has.
-///
-/// # Errors
-/// Everything that is wrong with the sweep's settings: nothing is measured then.
+/// All points of a sweep in order without duplicates, and the number of duplicates. Points are
+/// absent, not errors, if their model is missing or damaged, because suites list scenes that are
+/// not in every checkout.
 pub fn list(
     runner: &mut Runner,
     sweep: &Sweep,
@@ -83,10 +81,8 @@ pub fn list(
     Ok((points, equal))
 }
 
-/// Checks a sweep without opening its scenes: experiments, graphs, and the parameters of every point.
-///
-/// # Errors
-/// All mistakes, each once.
+/// Checks a sweep without opening its scenes: experiments, graphs, and the parameters of every
+/// point.
 pub fn check(home: &Workspace, path: &Path) -> Result<(), LabError> {
     let sweep = Sweep::read(path).map_err(LabError::Input)?;
     let mut warm = Warm::default();

@@ -1,5 +1,5 @@
-//! Sweeps: an experiment with everything that is varied about it, measured point by point into a folder that can be
-//! continued, split over machines and merged (docs/sweeps.md).
+//! Sweeps: an experiment with everything that is varied about it, measured point by point into a
+//! folder that can be continued, split over machines and merged (docs/sweeps.md).
 
 mod axis;
 mod file;
@@ -9,9 +9,11 @@ mod record;
 mod run;
 mod table;
 
-pub use super::points::Subject;
-pub use list::{check, list};
-pub use points::{NOTHING, SCENE, SET, Sweep};
-pub use record::{About, Collected, Manifest, ManifestPoint, PointRecord, collect, points_in};
-pub use run::{Measuring, Options, Shard, run, write_table};
-pub use table::{csv, parts_of};
+pub(crate) use super::points::Subject;
+pub(crate) use list::{check, list};
+pub use points::Sweep;
+pub(crate) use points::{NOTHING, SCENE, SET};
+pub use record::collect;
+pub(crate) use record::{Collected, Manifest, ManifestPoint, PointRecord, points_in};
+pub(crate) use run::{Measuring, Options, Shard, run, write_table};
+pub(crate) use table::{csv, parts_of};

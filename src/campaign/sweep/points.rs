@@ -10,41 +10,38 @@ use crate::measure::Frames;
 use crate::measure::reference::ALL_BOUNCES;
 use std::path::PathBuf;
 
-/// What [`Sweep::one_at_a_time`] varies: the scene,
+/// Name of the varied scene in [`Sweep::one_at_a_time`].
 pub const SCENE: &str = "scene";
-/// and what is set over the experiment, `NAME=VALUE`
+/// Name of the varied setting, `NAME=VALUE`.
 pub const SET: &str = "set";
-/// or this where it is as it is.
+/// Value of [`SET`] for the unchanged experiment.
 pub const NOTHING: &str = "nothing";
 
-/// A sweep: every experiment with every combination of the axes' choices, and some experiments beside them.
+/// A sweep: every experiment with every combination of the axes' choices, and single experiments.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     /// The file's stem.
     pub name: String,
     /// The file's text.
     pub text: String,
-    /// The experiments; the last of their sources is the sweep's text.
+    /// The experiments. The last of their sources is the sweep's text.
     pub experiments: Vec<Experiment>,
-    /// Experiments that are measured once, without the axes; they come first.
+    /// Experiments that are measured once without the axes. They come first.
     pub beside: Vec<Experiment>,
-    /// Names of what is varied, in order.
+    /// Names of the varied settings, in order.
     pub names: Vec<String>,
     /// Frames of every point.
     pub frames: Frames,
-    /// Bounces of the references that points are scored against: all parts against the first, the total against all.
+    /// Bounces of the references. All parts are scored against the first, the total against all.
     pub bounces: Vec<u32>,
     pub(super) fixed: Vec<Setting>,
     pub(super) axes: Vec<Vec<Choice>>,
-    /// Folder of the sweep's file: scene files are looked up in it.
+    /// Folder of the sweep's file, for relative paths.
     pub(super) folder: PathBuf,
 }
 
 impl Sweep {
-    /// A sweep without a file: every experiment with every combination of settings, each with its values as RON.
-    ///
-    /// # Errors
-    /// A setting without values; more than [`MAX_POINTS`] combinations.
+    /// A sweep without a file: every experiment with every combination of settings.
     pub fn of(
         mut experiments: Vec<Experiment>,
         axes: &[Axis],
@@ -53,7 +50,7 @@ impl Sweep {
         if let Some((name, _)) = axes.iter().find(|a| a.1.is_empty()) {
             return Err(LabError::Request(format!("'{name}' has no values")));
         }
-        // Messages about values point at the line of their setting.
+        // Places of messages are the lines of the settings.
         let joined: Vec<String> = axes.iter().map(|(_, values)| values.join(",")).collect();
         let (text, settings) = lines(
             axes.iter()
@@ -105,7 +102,7 @@ impl Sweep {
         })
     }
 
-    /// A sweep without a file: in every scene an experiment as it is, then with each of some settings alone, name and RON.
+    /// A sweep without a file: an experiment in every scene, unchanged and with each setting alone.
     pub fn one_at_a_time(
         mut experiment: Experiment,
         scenes: &[String],
@@ -121,7 +118,7 @@ impl Sweep {
         );
         experiment
             .sources
-            .add("the settings in turn".as_ref(), text.clone());
+            .add("the varied settings".as_ref(), text.clone());
         let choice = |name: &str, label: String, settings| Choice {
             labels: vec![(name.into(), label)],
             settings,
@@ -153,21 +150,19 @@ impl Sweep {
         }
     }
 
-    /// How many points there are.
+    /// Number of points.
     pub fn len(&self) -> usize {
         self.beside.len()
             + self.axes.iter().map(Vec::len).product::<usize>() * self.experiments.len()
     }
 
-    /// Whether there is nothing to measure.
+    /// Whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// One point: its experiment, and its values by the names of what is varied. The last axis varies fastest.
-    ///
-    /// # Errors
-    /// Settings that are none, with their places.
+    /// One point: its experiment and the values of its varied settings. The last axis varies
+    /// fastest.
     pub fn point(&self, index: usize) -> Result<(Experiment, Labels), Vec<Diagnostic>> {
         let (mut experiment, chosen) = match index.checked_sub(self.beside.len()) {
             None => (self.beside[index].clone(), Vec::new()),

@@ -1,5 +1,5 @@
-//! What a sweep's folder holds: `sweep.json`, the list of all points, the same in every shard; `points/ID.json`, one
-//! finished point each; `pictures/ID.jpg` and `errors/ID.jpg`.
+//! Files of a sweep: `sweep.json` with the list of all points, the same in every shard,
+//! `points/ID.json` for each finished point, `pictures/ID.jpg` and `errors/ID.jpg`.
 
 use crate::campaign::points::{DIGITS, Subject, SweepPoint};
 use crate::campaign::record::{Folder, Record, json, read_json, write_file};
@@ -25,11 +25,10 @@ const MAX_FILE: u64 = 4 << 20;
 pub struct Manifest {
     /// `MANIFEST_SCHEMA`.
     pub schema: String,
-    /// Name of the sweep.
     pub name: String,
-    /// The sweep's file, for people.
+    /// Text of the sweep's file.
     pub text: String,
-    /// Names of what is varied.
+    /// Names of the varied settings.
     pub names: Vec<String>,
     /// Frames of every point.
     pub frames: Frames,
@@ -37,29 +36,27 @@ pub struct Manifest {
     pub points: Vec<ManifestPoint>,
 }
 
-/// A point of the list.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ManifestPoint {
-    /// Its number, see [`SweepPoint::id`].
+    /// Identifier, see [`SweepPoint::id`].
     pub id: String,
-    /// Its values, by the names of what is varied.
+    /// Values by the names of the varied settings.
     pub labels: IndexMap<String, String>,
 }
 
-/// What a finished point is of.
+/// Description of a finished point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct About {
-    /// The experiment with nothing left to defaults, as it would stand in a file of the sweep's folder; empty where the
-    /// scene is not on the machine.
+    /// The experiment with all fields and without defaults, as text; empty if the scene is not on
+    /// the machine.
     pub experiment: String,
-    /// What is looked at: points of one subject can be compared.
+    /// Image content. Points with the same subject are comparable.
     pub subject: Subject,
 }
 
-/// A finished point.
 pub type PointRecord = Record<About, Point>;
 
-/// The records of a sweep's folder.
+/// Records of a sweep's folder.
 pub fn points_in(path: &Path) -> Folder {
     Folder {
         path: path.into(),
@@ -69,7 +66,7 @@ pub fn points_in(path: &Path) -> Folder {
     }
 }
 
-/// A picture's path in the folder: of kind `pictures` or `errors` by the number of a point.
+/// Path of a picture in the folder, of kind `pictures` or `errors`.
 pub(super) fn jpeg(kind: &str, name: &str) -> String {
     format!("{kind}/{name}.jpg")
 }
@@ -112,10 +109,7 @@ impl Manifest {
         folder.join("sweep.json")
     }
 
-    /// Writes it to its folder.
-    ///
-    /// # Errors
-    /// A folder that cannot be written to.
+    /// Writes the list to its folder.
     pub fn write(&self, folder: &Path) -> Result<(), LabError> {
         write_file(&Manifest::file(folder), &json(self)?)
     }
@@ -141,26 +135,26 @@ impl Manifest {
     }
 }
 
-/// What some folders hold together: shards of one sweep, or sweeps that are looked at side by side.
+/// Points of several folders: shards of one sweep, or different sweeps.
 #[derive(Clone, Debug, Default)]
 pub struct Collected {
     /// Names of the sweeps.
     pub sweeps: Vec<String>,
-    /// Names of everything that is varied.
+    /// Names of all varied settings.
     pub names: Vec<String>,
-    /// Every point of every list, in order, once; with its record where it is finished.
+    /// All points in order without duplicates, with the record of finished ones.
     pub points: Vec<(ManifestPoint, Option<PointRecord>)>,
-    /// Folder of each finished point, by its number.
+    /// Folder of each finished point, by identifier.
     folders: HashMap<String, PathBuf>,
 }
 
 impl Collected {
-    /// The picture of a point, or where its light differs from the reference (`errors`): JPEG.
+    /// The picture of a point, or its error map (`errors`), JPEG.
     pub fn picture(&self, kind: &str, id: &str) -> Option<Vec<u8>> {
         read_input(&self.folders.get(id)?.join(jpeg(kind, id)), MAX_FILE).ok()
     }
 
-    /// The reference that a point was scored against, displayed: JPEG.
+    /// The displayed reference of a point, JPEG.
     pub fn reference(&self, record: &PointRecord) -> Option<Vec<u8>> {
         read_input(
             &self
@@ -173,10 +167,8 @@ impl Collected {
     }
 }
 
-/// Reads folders of sweeps. A point that several hold is taken from the first in which it was measured without an error.
-///
-/// # Errors
-/// A folder without a list of points, or with a damaged one.
+/// Reads folders of sweeps. A point in several folders is taken from the first that has it without
+/// an error.
 pub fn collect(folders: &[PathBuf]) -> Result<Collected, LabError> {
     let mut out = Collected::default();
     let (mut sweeps, mut names) = (IndexSet::new(), IndexSet::new());

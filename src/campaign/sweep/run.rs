@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Which of the points: every `of`-th, from the `number`-th on.
+/// A share of the points: every `of`-th, from `number` on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     /// From 1 to `of`.
@@ -26,22 +26,22 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// All points.
     pub const ALL: Shard = Shard { number: 1, of: 1 };
 }
 
-/// How a sweep is run.
+/// Options of a run.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Where everything is kept.
+    /// Folder of the results.
     pub folder: PathBuf,
-    /// Which of the points.
+    /// Share of the points.
     pub shard: Shard,
     /// Frames of every point.
     pub frames: Frames,
-    /// Measure points again that have failed.
+    /// Whether failed points are measured again.
     pub again: bool,
-    /// Gather references to so many samples a pixel first; those that are cached are used as they are when absent.
+    /// Gather references to this number of samples per pixel first. `None` uses cached references
+    /// only.
     pub samples: Option<u64>,
 }
 
@@ -63,7 +63,7 @@ impl Job for SweepPoint {
 
     fn about(&self, runner: &mut Runner, folder: &Folder) -> Result<About, LabError> {
         let experiment = match &self.absent {
-            // Camera and light are not known.
+            // Camera and light are unknown.
             Some(_) => String::new(),
             None => {
                 let params = &runner
@@ -92,11 +92,8 @@ impl Job for SweepPoint {
     }
 }
 
-/// Measures every point of the shard that is not finished. Each is kept as soon as it is finished; an error that belongs
-/// to a point is kept in its place. A device that is lost is opened again.
-///
-/// # Errors
-/// What is wrong with the sweep as a whole, before anything is measured; a folder that cannot be written to; no device.
+/// Measures every open point of the shard. Each point is recorded at once, errors of a point too. A
+/// lost device is opened again.
 pub fn run(
     open: &Open,
     open_scene: &OpenScene,
@@ -147,10 +144,7 @@ pub fn run(
     Ok(Counts::of(&records))
 }
 
-/// Writes the table of a folder's points.
-///
-/// # Errors
-/// A folder that cannot be read or written to.
+/// Writes the table of a folder.
 pub fn write_table(folder: &Path) -> Result<(), LabError> {
     let table = super::table::csv(&collect(&[folder.into()])?)?;
     write_file(&folder.join("sweep.csv"), table.as_bytes())
@@ -160,19 +154,16 @@ pub fn write_table(folder: &Path) -> Result<(), LabError> {
 pub struct Measuring<'a> {
     /// Frames of every point.
     pub frames: Frames,
-    /// Bounces of the references that points are scored against.
+    /// Bounces of the references.
     pub bounces: &'a [u32],
-    /// Samples a pixel that references are gathered to first; what is on the disk is used as it is when absent.
+    /// Samples per pixel to gather references to first. `None` uses cached references only.
     pub samples: Option<u64>,
-    /// Which scores points have.
+    /// Scores of the points.
     pub scored: Scored<'a>,
 }
 
 impl Measuring<'_> {
-    /// The record of a point, if it is finished and scored against the references of now.
-    ///
-    /// # Errors
-    /// A reference of a point that is finished cannot be had.
+    /// The record of a finished point that is scored against the current references.
     pub fn kept(
         &self,
         runner: &mut Runner,
@@ -182,7 +173,7 @@ impl Measuring<'_> {
         let record: Option<PointRecord> = folder.read(&point.id);
         let known = match self.references(runner, point) {
             Ok(known) => known,
-            // A finished point is not given up for it. Others meet it again, and keep it, when their turn comes.
+            // A finished point stays. Points without a record report the error.
             Err(error) if record.as_ref().is_some_and(|r| r.done().is_some()) => return Err(error),
             Err(_) => Vec::new(),
         };
@@ -190,14 +181,10 @@ impl Measuring<'_> {
             .iter()
             .map(|(bounces, r)| (*bounces, r.samples))
             .collect();
-        // A reference that has come or grown since makes other scores.
+        // New or larger references change the scores.
         Ok(record.filter(|r| r.done().is_none_or(|found| found.references == samples)))
     }
 
-    /// Measures a point.
-    ///
-    /// # Errors
-    /// Everything that can be wrong with the point; the device was lost.
     pub fn measured(&self, runner: &mut Runner, point: &SweepPoint) -> Taken<SweepPoint> {
         if let Some(why) = &point.absent {
             return Err(LabError::Request(why.clone()));
@@ -225,10 +212,7 @@ impl Measuring<'_> {
         Ok((found.point, files))
     }
 
-    /// The references that a point is scored against, by bounces, as far as there are any.
-    ///
-    /// # Errors
-    /// One that cannot be gathered or read.
+    /// The available references of a point, by bounces.
     pub fn references(
         &self,
         runner: &mut Runner,

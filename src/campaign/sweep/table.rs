@@ -30,11 +30,8 @@ impl Row<'_> {
     }
 }
 
-/// Comma-separated values (RFC 4180), a line for each point in the order of the list. Columns that end in ` ms` are
-/// times and differ from run to run; everything else is the same on one device.
-///
-/// # Errors
-/// Writing to memory gives none, whatever the sweep.
+/// Comma-separated values (RFC 4180), a line for each point in order. Columns that end in ` ms` are
+/// times and differ between runs. All others are the same on one device.
 pub fn csv(collected: &Collected) -> Result<String, LabError> {
     let parts = |r: &Option<PointRecord>| {
         r.as_ref()

@@ -17,7 +17,8 @@ const SCHEMA: &str = "conelab-ablation-1";
 #[derive(Serialize)]
 struct Step {
     title: String,
-    /// By part: relMSE against the reference, and what the step adds: mean (x - y)^2 / (r^2 + 0.01), y the step before.
+    /// relMSE against the reference by part, and the error that the step adds: mean (x - y)^2 /
+    /// (r^2 + 0.01), y the previous step.
     parts: BTreeMap<String, [f64; 2]>,
 }
 
@@ -35,7 +36,7 @@ struct Ablation {
     steps: Vec<Step>,
 }
 
-/// Tells what each step of the graph's ablation adds to an experiment's error.
+/// Prints the error that each step of the graph's ablation adds.
 pub fn run(args: &AblateArgs) -> Result<(), LabError> {
     let experiment = args.experiment.read()?;
     adapt::check_frames(args.frames.unwrap_or(1), 0, 0.0)?;
@@ -128,7 +129,7 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
 
 fn print(reference: &Reference, steps: &[Step]) {
     say!(
-        "relMSE against {} samples a pixel; in brackets what the step adds to the one before",
+        "relMSE against {} samples a pixel; in brackets the error that the step adds",
         reference.samples
     );
     let parts: Vec<_> = reference.parts.iter().collect();

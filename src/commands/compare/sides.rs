@@ -40,7 +40,8 @@ impl<'a> Sources<'a> {
         }
     }
 
-    /// A picture by its path. `set` says whether `--set` is for it: a reference has other parameters.
+    /// A picture by its path. `set` says whether `--set` is for it: a reference has other
+    /// parameters.
     pub(super) fn side(&mut self, path: &Path, set: bool) -> Result<Side, LabError> {
         let name = shown(path).display().to_string();
         if path.is_dir() {
