@@ -1,8 +1,8 @@
 //! RON files with positions: every value that can be wrong remembers where it stands, and one wrong item does not hide
 //! the mistakes in the others.
 
-pub mod excerpt;
-pub mod panics;
+pub(crate) mod excerpt;
+pub(crate) mod panics;
 
 use crate::files::read_input_text;
 use excerpt::{excerpt, excerpt_at, harmless};
@@ -36,15 +36,14 @@ pub enum Severity {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
     /// How bad it is.
-    pub severity: Severity,
+    pub(crate) severity: Severity,
     /// Where.
     pub place: Place,
     /// What is wrong and what was expected.
     pub message: String,
     /// What to do, for instance the nearest known name.
     pub help: Option<String>,
-    /// The offending line.
-    pub source: Option<String>,
+    pub(crate) source: Option<String>,
 }
 
 impl Diagnostic {
@@ -68,7 +67,7 @@ impl Diagnostic {
     }
 
     /// With a hint.
-    pub fn help(mut self, help: Option<String>) -> Diagnostic {
+    pub(crate) fn help(mut self, help: Option<String>) -> Diagnostic {
         self.help = help;
         self
     }
@@ -159,7 +158,7 @@ pub struct Loc<T> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct At {
     /// Index in [`Sources`].
-    pub file: u32,
+    pub(crate) file: u32,
     /// Bytes from the start.
     pub offset: u32,
 }
@@ -206,7 +205,7 @@ impl Sources {
     }
 
     /// Whether all files read are still as they were.
-    pub fn are_current(&self) -> bool {
+    pub(crate) fn are_current(&self) -> bool {
         self.files
             .iter()
             .all(|(path, text)| read_input_text(path, MAX_BYTES).is_ok_and(|now| now == *text))
@@ -303,7 +302,7 @@ thread_local! {
 const REPORTED: &str = "(reported)";
 
 /// What a file with more nested brackets than the parser reads is told.
-pub const TOO_DEEP: &str = "brackets are nested too deeply; remove brackets around this";
+pub(crate) const TOO_DEEP: &str = "brackets are nested too deeply; remove brackets around this";
 
 fn explain(error: &ron::Error) -> (String, Option<String>) {
     match error {

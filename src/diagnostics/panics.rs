@@ -9,14 +9,10 @@ use std::sync::Once;
 thread_local! {
     /// Whether a panic of this thread is caught and told.
     static CAUGHT: Cell<bool> = const { Cell::new(false) };
-    /// Where it happened.
     static PLACE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
 /// Runs a reader of files that may panic on what it did not expect. What it was working on is lost with it.
-///
-/// # Errors
-/// The panic's message, with nothing printed.
 pub fn caught<T>(read: impl FnOnce() -> T) -> Result<T, String> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {

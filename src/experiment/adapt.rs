@@ -80,9 +80,6 @@ impl Experiment {
     }
 
     /// Like [`Experiment::adapt_scene`] for a scene that others share: it is copied only if something changes.
-    ///
-    /// # Errors
-    /// As [`Experiment::adapt_scene`].
     pub fn adapted(&self, scene: Arc<Scene>) -> Result<Arc<Scene>, ExperimentError> {
         let name = scene.name.clone();
         let (lights, environment) = (scene.lights.clone(), scene.environment.clone());

@@ -8,9 +8,10 @@ mod read;
 mod spans;
 mod write;
 
-pub use fields::{FIELDS, Field};
+pub(crate) use fields::{FIELDS, Field};
 pub(crate) use write::placed_text;
-pub use write::{resolved_text, write};
+pub(crate) use write::resolved_text;
+pub use write::write;
 
 use crate::diagnostics::{At, Diagnostic, Loc, Sources};
 use crate::files::FileError;
@@ -81,9 +82,6 @@ impl PlacedCamera {
     }
 
     /// What is wrong with its numbers.
-    ///
-    /// # Errors
-    /// The text for the user.
     pub fn check(&self) -> Result<(), String> {
         let numbers = [self.eye, self.target, self.up].map(|v| Vec3::from(v).is_finite());
         if numbers.contains(&false) || !self.fov_y.is_finite() {
@@ -152,7 +150,7 @@ pub struct EnvironmentChange {
 
 impl EnvironmentChange {
     /// This, and what `over` says in its place.
-    pub fn overlaid(self, over: EnvironmentChange) -> EnvironmentChange {
+    pub(crate) fn overlaid(self, over: EnvironmentChange) -> EnvironmentChange {
         EnvironmentChange {
             file: over.file.or(self.file),
             rotation: over.rotation.or(self.rotation),
@@ -161,9 +159,6 @@ impl EnvironmentChange {
     }
 
     /// Whether its numbers can be.
-    ///
-    /// # Errors
-    /// The text for the user.
     pub fn check(&self) -> Result<(), String> {
         environment::check(self.rotation.unwrap_or(0.0), self.intensity.unwrap_or(1.0))
     }
@@ -197,7 +192,7 @@ pub struct Experiment {
 }
 
 /// Largest picture, pixels a side.
-pub const MAX_SIZE: u32 = 16384;
+pub(crate) const MAX_SIZE: u32 = 16384;
 
 /// Size of a picture when nothing else is said.
 const DEFAULT_SIZE: (u32, u32) = (1280, 720);
@@ -241,10 +236,7 @@ impl Experiment {
 }
 
 /// Whether pictures of that size can be made.
-///
-/// # Errors
-/// The text for the user.
-pub fn check_size((width, height): (u32, u32)) -> Result<(), String> {
+pub(crate) fn check_size((width, height): (u32, u32)) -> Result<(), String> {
     if width == 0 || height == 0 || width > MAX_SIZE || height > MAX_SIZE {
         return Err(format!(
             "a picture of {width}x{height} cannot be made: each side is 1 to {MAX_SIZE} pixels"

@@ -7,7 +7,7 @@ use std::path::Path;
 impl Experiment {
     /// An error at the line of a field; `None` if the file does not set the field, or something else, such as the command
     /// line, has changed it.
-    pub fn error_in(&self, field: &str, message: impl Into<String>) -> Option<Diagnostic> {
+    pub(crate) fn error_in(&self, field: &str, message: impl Into<String>) -> Option<Diagnostic> {
         Some(self.sources.error(self.place_of(field)?, message))
     }
 

@@ -55,9 +55,6 @@ struct ExperimentFile {
 
 impl Experiment {
     /// Reads an experiment. Relative scene paths are relative to its folder.
-    ///
-    /// # Errors
-    /// All mistakes of the file.
     pub fn read(path: &Path) -> Result<Experiment, Vec<Diagnostic>> {
         let mut sources = Sources::default();
         let file = sources.read(path).map_err(|e| {
@@ -69,9 +66,6 @@ impl Experiment {
     }
 
     /// Reads an experiment from text, as if it stood in the file `path`.
-    ///
-    /// # Errors
-    /// As [`Experiment::read`].
     pub fn from_text(path: &Path, text: &str) -> Result<Experiment, Vec<Diagnostic>> {
         let mut sources = Sources::default();
         let file = sources.add(path, text.to_string());

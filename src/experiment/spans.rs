@@ -9,7 +9,6 @@ pub(super) struct Entry {
     pub key: String,
     /// From its first byte to behind its comma, where there is one.
     pub whole: Range<usize>,
-    /// The value.
     pub value: Range<usize>,
     /// Whether a comma follows.
     pub comma: bool,

@@ -41,7 +41,6 @@ impl Side {
 pub struct Comparison {
     /// [`SCHEMA`].
     pub schema: String,
-    /// Program version.
     pub version: String,
     /// Width and height, pixels.
     pub size: [u32; 2],
@@ -66,7 +65,6 @@ pub struct PartComparison {
     pub structure_noise: Option<f64>,
     /// First and last exposure of HDR-FLIP, stops.
     pub exposures: [f64; 2],
-    /// How many exposures.
     pub exposure_count: u32,
     /// The whole frame, then the regions.
     pub regions: Vec<RegionComparison>,

@@ -1,13 +1,14 @@
 //! One experiment, measured: times of its passes, memory, failed checks, and how far its light is from a reference.
 
-pub mod comparison;
+pub(crate) mod comparison;
 pub mod oracle;
 mod pictures;
 pub mod reference;
 mod warm;
 mod warm_up;
 
-pub use warm::{Wanted, Warm};
+pub(crate) use warm::Wanted;
+pub use warm::Warm;
 pub use warm_up::WarmUp;
 
 use crate::experiment::Experiment;
@@ -64,7 +65,7 @@ pub struct Point {
 
 impl Point {
     /// Noise of a part's reference; 0 where it is not known.
-    pub fn noise_of(&self, part: &str) -> Noise {
+    pub(crate) fn noise_of(&self, part: &str) -> Noise {
         let of = |list: &BTreeMap<String, f64>| list.get(part).copied().unwrap_or(0.0);
         Noise {
             relmse: of(&self.noise),
@@ -219,9 +220,6 @@ pub struct Timed {
 
 /// Runs an experiment and keeps the times of its last frames; only what the picture needs, and these `extra`
 /// textures, is computed.
-///
-/// # Errors
-/// Everything that can be wrong with the experiment; the device was lost.
 pub fn timed(
     lab: &Lab,
     loaded: &Loaded,

@@ -24,10 +24,8 @@ pub struct Warm {
     pub sessions: HashMap<String, ReusableParts>,
 }
 
-/// Which reference.
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted {
-    /// Bounces.
     pub bounces: u32,
     /// Samples a pixel that are gathered; what is on the disk is used as it is when absent.
     pub samples: Option<u64>,
@@ -38,9 +36,6 @@ pub struct Wanted {
 
 impl Warm {
     /// A graph, compiled once.
-    ///
-    /// # Errors
-    /// All mistakes of graph and shaders.
     pub fn graph(&mut self, home: &Workspace, name: &str) -> Result<&Loaded, LabError> {
         if !self.loaded.contains_key(name) {
             let loaded = home.load(name).map_err(LabError::Input)?;
@@ -57,9 +52,6 @@ impl Warm {
     }
 
     /// Checks an experiment's graph and parameters; its scene is not opened.
-    ///
-    /// # Errors
-    /// All mistakes.
     pub fn check(&mut self, home: &Workspace, experiment: &Experiment) -> Result<(), LabError> {
         experiment.params_over(&self.graph(home, &experiment.graph)?.graph.params)?;
         Ok(())
@@ -119,7 +111,7 @@ impl Warm {
     }
 
     /// Lets go of everything on a device that was lost.
-    pub fn leave_device(&mut self) {
+    pub(crate) fn leave_device(&mut self) {
         let (loaded, references) = (
             std::mem::take(&mut self.loaded),
             std::mem::take(&mut self.references),

@@ -12,7 +12,7 @@ const MOST_FRAMES: usize = 10_000;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WarmUp {
     /// Frames, at least.
-    pub frames: usize,
+    pub(crate) frames: usize,
     /// GPU time of all of them, at least.
     pub gpu_ms: f64,
 }
@@ -30,9 +30,6 @@ impl WarmUp {
 
     /// Runs frames until the device is warm, and says how many. `frame` runs one and gives the GPU time, ms, of what
     /// has finished meanwhile.
-    ///
-    /// # Errors
-    /// The errors of `frame`.
     pub fn run<E>(self, frame: &mut dyn FnMut() -> Result<f64, E>) -> Result<usize, E> {
         let (mut frames, mut gpu_ms) = (0, 0.0);
         while frames < self.frames || (gpu_ms < self.gpu_ms && frames < MOST_FRAMES) {

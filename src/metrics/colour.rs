@@ -58,13 +58,13 @@ fn relative_xyz(rgb: [f32; 3]) -> [f32; 3] {
 }
 
 /// The linearised L\*a\*b\* in which FLIP filters: luminance, red-green, blue-yellow (Andersson et al. 2020, section 4.1).
-pub fn ycxcz(rgb: [f32; 3]) -> [f32; 3] {
+pub(crate) fn ycxcz(rgb: [f32; 3]) -> [f32; 3] {
     let [x, y, z] = relative_xyz(rgb);
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
 /// The inverse of [`ycxcz`].
-pub fn from_ycxcz([y, cx, cz]: [f32; 3]) -> [f32; 3] {
+pub(crate) fn from_ycxcz([y, cx, cz]: [f32; 3]) -> [f32; 3] {
     let y = (y + 16.0) / 116.0;
     times(
         &FROM_XYZ,
@@ -77,7 +77,7 @@ pub fn from_ycxcz([y, cx, cz]: [f32; 3]) -> [f32; 3] {
 }
 
 /// CIE L\*a\*b\* with the Hunt effect: chroma fades with lightness (Andersson et al. 2020, section 4.1.2).
-pub fn hunt_lab(rgb: [f32; 3]) -> [f32; 3] {
+pub(crate) fn hunt_lab(rgb: [f32; 3]) -> [f32; 3] {
     const DELTA: f32 = 6.0 / 29.0;
     let f = |t: f32| {
         if t > DELTA * DELTA * DELTA {

@@ -17,7 +17,6 @@ const STRUCTURE: f64 = 0.5;
 pub struct MapFile {
     /// End of the file's name, for example `flip.png`.
     pub name: &'static str,
-    /// The file.
     pub bytes: Vec<u8>,
     /// What its colours or channels mean.
     pub scale: String,

@@ -1,16 +1,17 @@
 //! How far a picture is from a reference: numbers and maps, on linear radiance. `docs/metrics.md` has every definition.
 
 pub mod colour;
-pub mod flip;
-pub mod hdr_flip;
-pub mod maps;
+pub(crate) mod flip;
+pub(crate) mod hdr_flip;
+pub(crate) mod maps;
 mod means;
-pub mod region;
+pub(crate) mod region;
 mod structure;
 mod table;
 
 pub use structure::{structure, structure_noise};
-pub use table::{Best, METRICS, Metric, Noise, OfNoise, RELMSE, Scores};
+pub(crate) use table::{Best, Metric, RELMSE};
+pub use table::{METRICS, Noise, Scores};
 
 use hdr_flip::Exposures;
 use serde::Deserialize;
@@ -18,10 +19,10 @@ use std::sync::OnceLock;
 use structure::Structure;
 
 /// Most pixels of a picture that is compared (8192 x 8192); FLIP takes about 120 bytes for each.
-pub const MAX_PIXELS: u64 = 1 << 26;
+pub(crate) const MAX_PIXELS: u64 = 1 << 26;
 
 /// A pixel is dark where its luminance is at most this part of the reference's mean luminance.
-pub const DARK: f64 = 0.01;
+pub(crate) const DARK: f64 = 0.01;
 
 /// Why pictures cannot be compared.
 #[derive(Debug, thiserror::Error)]
@@ -69,10 +70,11 @@ pub fn relmse(test: &Linear, reference: &Linear) -> Result<f64, MetricError> {
 }
 
 /// mean (x - y)^2 / (r^2 + 0.01): how far x is from y in the measure of relMSE.
-///
-/// # Errors
-/// As [`relmse`].
-pub fn relative_distance(x: &Linear, y: &Linear, reference: &Linear) -> Result<f64, MetricError> {
+pub(crate) fn relative_distance(
+    x: &Linear,
+    y: &Linear,
+    reference: &Linear,
+) -> Result<f64, MetricError> {
     check(x, reference)?;
     check(y, reference)?;
     let texels = x
@@ -124,10 +126,10 @@ pub fn scores(test: &Linear, reference: &Linear) -> Result<Scores, MetricError> 
 }
 
 /// What is no difference, in multiples of the reference's noise.
-pub const NOISE_FACTOR: f64 = 4.0;
+pub(crate) const NOISE_FACTOR: f64 = 4.0;
 
 /// Whether a relMSE, or a difference of two, is below four times the noise.
-pub fn within_noise(relmse: f64, noise: Option<f64>) -> bool {
+pub(crate) fn within_noise(relmse: f64, noise: Option<f64>) -> bool {
     noise.is_some_and(|n| relmse.abs() < NOISE_FACTOR * n)
 }
 
@@ -168,7 +170,7 @@ impl<'a> Compared<'a> {
     }
 
     /// The scores over all pixels by one metric alone, without the time that others take.
-    pub fn scores_by(&self, metric: &Metric) -> Option<Scores> {
+    pub(crate) fn scores_by(&self, metric: &Metric) -> Option<Scores> {
         Scores::new(self, None, &|m| m == metric)
     }
 

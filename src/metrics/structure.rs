@@ -19,7 +19,6 @@ const HALF: f64 = 0.1;
 pub(super) struct Structure {
     /// Width and height of the picture, pixels.
     size: (usize, usize),
-    /// Blocks a row.
     columns: usize,
     /// Block and its right neighbour, rows from the top.
     right: Vec<f32>,
@@ -38,9 +37,6 @@ pub fn structure(test: &Linear, reference: &Linear) -> Result<f64, MetricError> 
 
 /// The structure error that a reference's noise alone gives, from the means of two halves of its samples: half the
 /// difference of the halves is distributed as the error of their mean.
-///
-/// # Errors
-/// As [`structure`].
 pub fn structure_noise(even: &Linear, odd: &Linear) -> Result<f64, MetricError> {
     check(even, odd)?;
     Ok(Structure::new(even, odd, dark(even, odd), 0.5).mean(None))

@@ -2,6 +2,6 @@
 
 pub mod capture;
 pub mod picture;
-pub mod stats;
+pub(crate) mod stats;
 pub(crate) mod table;
-pub mod timers;
+pub(crate) mod timers;

@@ -14,9 +14,7 @@ pub const SCHEMA: &str = "conelab-stats-1";
 /// Least, median and 95th percentile, ms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
-    /// Least.
     pub min: f64,
-    /// Median.
     pub median: f64,
     /// 95th percentile.
     pub p95: f64,
@@ -30,9 +28,7 @@ pub struct PassStats {
     /// What tables and charts count it under: the graph's `stage` of the pass, or its name.
     #[serde(default)]
     pub stage: String,
-    /// On the GPU.
     pub gpu_ms: Spread,
-    /// Frames measured.
     pub frames: usize,
     /// In how many of them it skipped, which count as 0 ms.
     #[serde(default)]
@@ -40,14 +36,10 @@ pub struct PassStats {
     pub skipped: usize,
 }
 
-/// The device.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DeviceStats {
-    /// Name.
     pub name: String,
-    /// Driver.
     pub driver: String,
-    /// Vulkan version.
     pub api: String,
     /// discrete, integrated, virtual, cpu or other.
     pub kind: String,
@@ -70,21 +62,14 @@ impl DeviceStats {
 pub struct Stats {
     /// [`SCHEMA`].
     pub schema: String,
-    /// Program version.
     pub version: String,
-    /// Device and driver.
     pub device: DeviceStats,
-    /// Experiment name.
     pub experiment: String,
-    /// Graph name.
     pub graph: String,
-    /// Scene name.
     pub scene: String,
     /// Triangles of the scene.
     pub triangles: usize,
-    /// Picture size.
     pub size: [u32; 2],
-    /// All parameters.
     pub params: BTreeMap<String, serde_json::Value>,
     /// Frames run before measuring.
     pub warmup: usize,

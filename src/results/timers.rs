@@ -16,9 +16,7 @@ pub enum Rows {
     #[default]
     #[value(skip)]
     None,
-    /// The graph's stages.
     Stages,
-    /// Every pass.
     Passes,
 }
 
@@ -33,7 +31,6 @@ impl Rows {
     }
 }
 
-/// Times to draw.
 #[derive(Clone, Debug, Default)]
 pub struct Timers {
     /// What they are of, a line each.
@@ -256,9 +253,6 @@ fn numbered(number: usize) -> Color32 {
 }
 
 /// A picture with times drawn onto it.
-///
-/// # Errors
-/// The device was lost, out of memory.
 pub fn stamped(gpu: &Arc<Gpu>, texels: &Texels, timers: &Timers) -> Result<Texels> {
     let [width, height, _] = texels.extent;
     let rgba: Vec<u8> = picture::rgb8(texels)

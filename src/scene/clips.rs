@@ -10,9 +10,6 @@ const MAX_MESSAGE: usize = 400;
 pub(super) const LEFT_OUT: &str = "of several animations of one node the first is played. `clip: \"NAME\"` of a scene file's model chooses another";
 
 /// The number of the clip with a name.
-///
-/// # Errors
-/// There is none; the names that there are.
 pub(super) fn number(clip: &str, names: &[String]) -> Result<usize, String> {
     names.iter().position(|name| name == clip).ok_or_else(|| {
         let hint =

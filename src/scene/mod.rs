@@ -36,18 +36,19 @@ use glam::{Mat4, Vec3, Vec4};
 use indexmap::IndexMap;
 use serde::Deserialize;
 
-pub use environment::{Environment, SUN, SkyPicture};
+pub use environment::SUN;
+pub(crate) use environment::{Environment, SkyPicture};
 pub use error::SceneError;
-pub use limits::MAX_COORDINATE;
+pub(crate) use limits::MAX_COORDINATE;
 pub use lookup::{Lookup, Lookups, Wrap};
 pub use mesh::Side;
 pub(crate) use motion::in_world;
-pub use motion::{
-    Curve, Deformer, Influence, Interpolation, Joint, Keyframe, Morph, Mover, Rest, Track, Value,
-};
+pub(crate) use motion::{Curve, Influence, Interpolation, Joint, Morph, Rest};
+pub use motion::{Deformer, Keyframe, Mover, Track, Value};
 pub(crate) use shuffle::splitmix;
-pub use split::MAX_TRIANGLES;
-pub use texture::{MAX_TEXTURE_KINDS, SHARED_EDGE, SmallPicture, TextureKind, keep_their_size};
+pub(crate) use texture::{
+    MAX_TEXTURE_KINDS, SHARED_EDGE, SmallPicture, TextureKind, keep_their_size,
+};
 pub(crate) use transform::origin_of;
 
 /// Everything that is rendered, and from where.
@@ -202,7 +203,7 @@ impl Default for Material {
 
 impl Mesh {
     /// Whether any vertex has a colour.
-    pub fn has_colors(&self) -> bool {
+    pub(crate) fn has_colors(&self) -> bool {
         self.vertices.iter().any(|v| v.color != [1.0; 4])
     }
 }

@@ -35,7 +35,7 @@ impl Scene {
 
     /// [`Scene::open`], and the files that were read or looked for, in order of their names. When one of them changes, the
     /// scene may be another; this holds for a scene that could not be opened too.
-    pub fn open_with_files(
+    pub(crate) fn open_with_files(
         spec: &str,
         progress: &dyn Fn(&str, f32) -> ControlFlow<()>,
     ) -> (Result<Scene, SceneError>, Vec<PathBuf>) {

@@ -7,14 +7,14 @@ use image::imageops::{FilterType, resize};
 
 impl TextureFormat {
     /// Whether texels come in compressed blocks.
-    pub fn is_compressed(self) -> bool {
+    pub(crate) fn is_compressed(self) -> bool {
         !matches!(self, TextureFormat::Rgba8Srgb | TextureFormat::Rgba8Unorm)
     }
 }
 
 impl Texture {
     /// The same picture in RGBA8 at `width` x `height`, with new mips. A texture that cannot be decoded becomes magenta.
-    pub fn resampled(&self, width: u32, height: u32) -> Texture {
+    pub(crate) fn resampled(&self, width: u32, height: u32) -> Texture {
         let format = if self.format.is_srgb() {
             TextureFormat::Rgba8Srgb
         } else {

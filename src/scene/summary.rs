@@ -17,7 +17,7 @@ impl Scene {
 
     /// The same as JSON, without texels and vertices. Lengths are in metres, angles in degrees, light in W/(m² sr), W/sr or
     /// W/m² as the scene file has them.
-    pub fn description(&self) -> Value {
+    pub(crate) fn description(&self) -> Value {
         let (low, high) = self.bounds();
         let texture = |number: Option<u32>| {
             number

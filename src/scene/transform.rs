@@ -21,7 +21,7 @@ impl Scene {
     }
 
     /// How many of them emit light.
-    pub fn emitting_triangle_count(&self) -> usize {
+    pub(crate) fn emitting_triangle_count(&self) -> usize {
         let emits = |m: u32| {
             self.materials
                 .get(m as usize)

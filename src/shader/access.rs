@@ -8,7 +8,6 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Access {
     /// Loads, atomics that give the old value.
     pub read: bool,
-    /// Stores, atomics.
     pub write: bool,
     /// Asks for the size of an image, or hands it on.
     pub size: bool,
@@ -256,7 +255,9 @@ pub(super) fn stored_by_each(words: &[u32]) -> BTreeSet<u32> {
         match (opcode(i), i) {
             (LOAD, [_, _, id, from, ..]) if places.contains(from) => drop(places.insert(*id)),
             (LOAD, [_, _, id, from, ..]) => {
-                drop(variables.get(from).map(|v| images.insert(*id, v.binding)))
+                if let Some(variable) = variables.get(from) {
+                    images.insert(*id, variable.binding);
+                }
             }
             // OpBitcast; OpVectorShuffle of the first two.
             (124, [_, _, id, from]) if places.contains(from) => drop(places.insert(*id)),
@@ -287,7 +288,7 @@ fn storage_images(words: &[u32]) -> BTreeSet<u32> {
         match (opcode(i), i) {
             (TYPE_IMAGE, [_, id, ..]) => drop(types.insert(*id)),
             (TYPE_POINTER, [_, id, _, pointee]) if types.contains(pointee) => {
-                drop(types.insert(*id))
+                types.insert(*id);
             }
             (VARIABLE, [_, ty, id, ..]) if types.contains(ty) => drop(images.insert(*id)),
             _ => {}

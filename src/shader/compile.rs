@@ -22,16 +22,12 @@ pub struct Source {
     pub stage: Stage,
 }
 
-/// A compiled shader.
 #[derive(Clone, Debug)]
 pub struct Compiled {
     /// File name in the shader folder.
     pub file: String,
-    /// Stage.
     pub stage: Stage,
-    /// SPIR-V.
     pub words: Arc<Vec<u32>>,
-    /// What it binds.
     pub interface: Interface,
     /// All files that went into it, with their text (names relative to the shader folder).
     pub texts: Arc<BTreeMap<String, String>>,
@@ -171,9 +167,6 @@ impl ShaderCompiler {
     }
 
     /// The files that a shader is made of: name, text.
-    ///
-    /// # Errors
-    /// Files that cannot be read.
     pub fn texts(
         &self,
         file: &str,

@@ -6,7 +6,6 @@ use std::fmt;
 
 /// Kinds of 32-bit numbers, and the rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[expect(missing_docs, reason = "named after GLSL's types")]
 pub enum Scalar {
     Float,
     Int,
@@ -18,13 +17,11 @@ pub enum Scalar {
 /// A type with its layout.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Layout {
-    /// A number.
     Scalar(Scalar),
     /// 2 to 4 numbers.
     Vector(Scalar, u32),
     /// Columns of so many numbers.
     Matrix {
-        /// Number of columns.
         columns: u32,
         /// Numbers of a column.
         rows: u32,
@@ -33,9 +30,7 @@ pub enum Layout {
     },
     /// Elements one after another; no count where the buffer's length decides.
     Array {
-        /// An element.
         of: Box<Layout>,
-        /// How many.
         count: Option<u32>,
         /// Bytes from one to the next.
         stride: u32,
@@ -51,7 +46,6 @@ pub struct Member {
     pub name: String,
     /// Bytes from the start of the struct.
     pub offset: u32,
-    /// What it is.
     pub layout: Layout,
 }
 
@@ -60,7 +54,6 @@ pub struct Member {
 pub struct Missing {
     /// The path before it.
     pub of: String,
-    /// The name.
     pub name: String,
     /// What there is instead.
     pub known: Vec<String>,
@@ -158,9 +151,6 @@ impl Layout {
     }
 
     /// What a path names, and its byte: members by name, components of vectors by x y z w, elements by `[number]`.
-    ///
-    /// # Errors
-    /// The first name that is not there.
     pub fn find(&self, path: &str) -> Result<(u32, Layout), Missing> {
         let mut at = (0, self.clone());
         let mut walked = String::new();

@@ -86,9 +86,6 @@ pub(super) fn check_growth(texts: &BTreeMap<String, String>) -> Result<(), Grown
 
 /// Checks that nothing but comments is before `#version`. With a letter there the compiler prints thousands of lines of
 /// its own tables, to standard output.
-///
-/// # Errors
-/// The line, from 1, and the fault.
 pub(super) fn check_version(text: &str) -> Result<(), (u32, String)> {
     let lines = lines(text);
     let mut before = lines

@@ -2,15 +2,19 @@
 
 mod access;
 mod compile;
-pub mod layout;
+pub(crate) mod layout;
 mod macros;
 mod reflect;
 mod sizes;
 mod strip;
 
-pub use compile::{Compiled, Generated, ShaderCompiler, Source, find, module_include, read_module};
+pub(crate) use compile::{Compiled, Generated, find, module_include};
 pub(crate) use compile::{MAX_BYTES, is_inside};
-pub use layout::Layout;
-pub use reflect::{Binding, Interface, Resource, Shape};
-pub use sizes::{MAX_BYTES as MAX_VARIABLE_BYTES, TooLarge, check_sizes};
-pub use strip::{strip_images, strip_outputs};
+pub use compile::{ShaderCompiler, Source, read_module};
+pub(crate) use layout::Layout;
+pub(crate) use reflect::Binding;
+pub use reflect::{Resource, Shape};
+pub(crate) use sizes::MAX_BYTES as MAX_VARIABLE_BYTES;
+pub use sizes::check_sizes;
+pub(crate) use strip::strip_images;
+pub use strip::strip_outputs;

@@ -23,7 +23,7 @@ pub enum Shape {
 
 impl Shape {
     /// GLSL's suffix.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Shape::D2 => "2D",
             Shape::D2Array => "2DArray",
@@ -75,7 +75,6 @@ pub struct Binding {
     pub name: String,
     /// Number given by the compiler.
     pub binding: u32,
-    /// What it is.
     pub resource: Resource,
     /// How the block of a buffer or uniform lies in memory.
     pub layout: Option<Arc<Layout>>,
@@ -86,7 +85,6 @@ pub struct Binding {
 /// What one shader stage touches.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Interface {
-    /// Bindings by name.
     pub bindings: Vec<Binding>,
     /// Ids of specialisation constants.
     pub constants: Vec<u32>,

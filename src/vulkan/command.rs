@@ -30,9 +30,6 @@ pub struct FrameSlot {
 
 impl FrameSlot {
     /// A slot with room for so many timestamps.
-    ///
-    /// # Errors
-    /// Out of memory.
     pub fn new(gpu: &Arc<Gpu>, timestamps: u32) -> Result<FrameSlot> {
         let mut slot = FrameSlot {
             gpu: gpu.clone(),
@@ -98,17 +95,11 @@ impl FrameSlot {
     }
 
     /// Records and submits a frame, after the one that was submitted from this slot has finished.
-    ///
-    /// # Errors
-    /// The device was lost.
     pub fn submit(&mut self, record: impl FnOnce(&mut Commands<'_>)) -> Result<()> {
         self.submit_between(None, record)
     }
 
     /// Like [`FrameSlot::submit`]; waits for the first semaphore and signals the second.
-    ///
-    /// # Errors
-    /// The device was lost.
     pub(super) fn submit_between(
         &mut self,
         semaphores: Option<(vk::Semaphore, vk::Semaphore)>,
@@ -121,9 +112,6 @@ impl FrameSlot {
 
     /// Submits what `first` records, behind it commands that were recorded before for this slot, and then what `last`
     /// records.
-    ///
-    /// # Errors
-    /// The device was lost.
     pub fn submit_again(
         &mut self,
         recording: &Recording,
@@ -224,9 +212,6 @@ pub struct Recording {
 
 impl Recording {
     /// Records commands with the timestamps of a slot.
-    ///
-    /// # Errors
-    /// Out of memory.
     pub fn new(slot: &FrameSlot, record: impl FnOnce(&mut Commands<'_>)) -> Result<Recording> {
         let (pool, buffer) = command_buffer(&slot.gpu)?;
         let mut recording = Recording {
@@ -297,9 +282,6 @@ impl Drop for FrameSlot {
 )]
 impl Commands<'_> {
     /// Records, submits and waits.
-    ///
-    /// # Errors
-    /// The device was lost.
     pub fn once(gpu: &Arc<Gpu>, record: impl FnOnce(&mut Commands<'_>)) -> Result<()> {
         let mut slot = FrameSlot::new(gpu, 0)?;
         slot.submit(record)?;
@@ -334,7 +316,6 @@ impl Commands<'_> {
         }
     }
 
-    /// Closes the label.
     pub fn end_label(&mut self) {
         if let Some(names) = &self.gpu.names {
             unsafe { names.device.cmd_end_debug_utils_label(self.handle) };
@@ -541,7 +522,6 @@ impl Commands<'_> {
         }
     }
 
-    /// Ends rendering.
     pub fn end_rendering(&mut self) {
         unsafe { self.gpu.device.cmd_end_rendering(self.handle) };
     }

@@ -7,11 +7,8 @@ use ash::vk;
 pub enum Channels {
     /// Floating point or normalised: read as `float` by shaders.
     Float,
-    /// Unsigned integers.
     Uint,
-    /// Signed integers.
     Int,
-    /// Depth.
     Depth,
 }
 
@@ -20,7 +17,6 @@ pub enum Channels {
 pub struct Format {
     /// Name in graphs and, where it is a storage format, in GLSL.
     pub name: &'static str,
-    /// Vulkan's name.
     pub vk: vk::Format,
     /// Bytes a texel.
     pub bytes: u32,
@@ -86,7 +82,6 @@ impl Format {
         FORMATS.iter().find(|f| f.name == name).copied()
     }
 
-    /// All names.
     pub fn names() -> impl Iterator<Item = &'static str> {
         FORMATS.iter().map(|f| f.name)
     }

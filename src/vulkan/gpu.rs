@@ -56,36 +56,33 @@ const SHORT: Duration = Duration::from_millis(50);
 pub struct Features {
     /// `VK_EXT_conservative_rasterization`, overestimating.
     pub conservative_rasterization: bool,
-    /// Geometry shaders.
-    pub geometry: bool,
-    /// Tessellation shaders.
-    pub tessellation: bool,
+    pub(crate) geometry: bool,
+    pub(crate) tessellation: bool,
     /// Stores and atomics in fragment shaders.
     pub fragment_stores: bool,
     /// Stores and atomics in vertex, tessellation and geometry shaders.
     pub vertex_stores: bool,
     /// `gl_ClipDistance`.
-    pub clip_distance: bool,
+    pub(crate) clip_distance: bool,
     /// Clamping of depth instead of clipping.
     pub depth_clamp: bool,
     /// BC1 to BC7 textures.
-    pub bc: bool,
-    /// Anisotropic filtering.
-    pub anisotropy: bool,
+    pub(crate) bc: bool,
+    pub(crate) anisotropy: bool,
     /// Storage images may be written without a format in the shader.
     pub write_without_format: bool,
     /// Several draws from one buffer in one call.
-    pub multi_draw_indirect: bool,
+    pub(crate) multi_draw_indirect: bool,
     /// Attachments of one pass may blend differently.
-    pub independent_blend: bool,
+    pub(crate) independent_blend: bool,
     /// Vertex numbers above 2^24.
-    pub full_index: bool,
+    pub(crate) full_index: bool,
     /// 64-bit integers in shaders, and atomics on those in buffers.
-    pub int64_atomics: bool,
+    pub(crate) int64_atomics: bool,
     /// Buffers can be shared with another device of the same physical one.
-    pub shares_memory: bool,
+    pub(crate) shares_memory: bool,
     /// It does less than Vulkan asks, and says what: MoltenVK. Such devices open with VK_KHR_portability_subset alone.
-    pub portability: bool,
+    pub(crate) portability: bool,
 }
 
 /// What a device is.
@@ -102,9 +99,8 @@ pub struct DeviceInfo {
     /// Nanoseconds of one timestamp tick; 0 when the queue has no timestamps.
     pub timestamp_ns: f64,
     /// Bits of a tick; those above are not counted, so that the count starts over.
-    pub timestamp_mask: u64,
-    /// Limits.
-    pub limits: vk::PhysicalDeviceLimits,
+    pub(crate) timestamp_mask: u64,
+    pub(crate) limits: vk::PhysicalDeviceLimits,
     /// Bytes of the largest device-local heap.
     pub heap: u64,
     /// Optional abilities.
@@ -116,7 +112,7 @@ pub struct DeviceInfo {
 
 impl DeviceInfo {
     /// Milliseconds between two timestamps, of which the count may have started over once; 0 where the second is the earlier one.
-    pub fn ms_between(&self, from: u64, to: u64) -> f64 {
+    pub(crate) fn ms_between(&self, from: u64, to: u64) -> f64 {
         let ticks = to.wrapping_sub(from) & self.timestamp_mask;
         if ticks > self.timestamp_mask / 2 {
             0.0
@@ -480,17 +476,11 @@ fn choose(instance: &ash::Instance, wanted: Option<&str>) -> Result<vk::Physical
 
 impl Gpu {
     /// Opens a device.
-    ///
-    /// # Errors
-    /// No loader, no device of Vulkan 1.3, no validation layer where asked for.
     pub fn open(options: &GpuOptions) -> Result<Arc<Gpu>> {
         Gpu::open_for(options, None)
     }
 
     /// Opens a device that can present to windows of a window system.
-    ///
-    /// # Errors
-    /// As [`Gpu::open`].
     pub fn open_for(
         options: &GpuOptions,
         display: Option<raw_window_handle::RawDisplayHandle>,

@@ -58,9 +58,7 @@ pub struct ImageDesc {
     pub extent: [u32; 3],
     /// Whether it is a 3D image.
     pub volume: bool,
-    /// Array layers.
     pub layers: u32,
-    /// Mip levels.
     pub mips: u32,
     /// Format of the texels.
     pub format: vk::Format,
@@ -75,7 +73,6 @@ pub struct Image {
     gpu: Arc<Gpu>,
     pub(super) handle: vk::Image,
     memory: Memory,
-    /// What it is.
     pub desc: ImageDesc,
     /// Bytes of its memory.
     pub bytes: u64,
@@ -88,7 +85,6 @@ pub struct ViewDesc {
     pub kind: vk::ImageViewType,
     /// Format it is read as.
     pub format: vk::Format,
-    /// Depth or colour.
     pub aspect: vk::ImageAspectFlags,
     /// First mip and their number.
     pub mips: (u32, u32),
@@ -136,9 +132,7 @@ fn allocate(
 
 /// A buffer or an image without memory, to be given some together with others.
 pub enum Bare {
-    /// A buffer.
     Buffer(Buffer),
-    /// An image.
     Image(Image),
 }
 
@@ -167,9 +161,6 @@ impl Bare {
 /// Lays resources into one piece of memory of so many bytes, each at its offset ([`Bare::needs`]); or each into its own, where no
 /// kind of memory is for all. What lies in the same place must not be needed at the same time, and whoever is needed next
 /// begins with undefined content (Vulkan 1.3, section 12.8, Memory Aliasing).
-///
-/// # Errors
-/// Out of memory.
 pub fn lay_together(
     gpu: &Arc<Gpu>,
     name: &str,
@@ -253,9 +244,6 @@ fn free(gpu: &Gpu, allocation: Option<Allocation>) {
 
 impl Buffer {
     /// Makes a buffer; `host` memory can be written and read by the program.
-    ///
-    /// # Errors
-    /// Out of memory.
     pub fn new(
         gpu: &Arc<Gpu>,
         name: &str,
@@ -269,9 +257,6 @@ impl Buffer {
     }
 
     /// A buffer without memory, for [`lay_together`].
-    ///
-    /// # Errors
-    /// Out of memory.
     pub fn bare(
         gpu: &Arc<Gpu>,
         name: &str,
@@ -380,9 +365,6 @@ impl Image {
     }
 
     /// An image without memory, for [`lay_together`].
-    ///
-    /// # Errors
-    /// As [`Image::new`].
     pub fn bare(gpu: &Arc<Gpu>, desc: ImageDesc) -> Result<Image> {
         let limits = &gpu.info.limits;
         let limit = if desc.volume {
@@ -495,17 +477,11 @@ impl Drop for Image {
 
 impl View {
     /// Makes a view.
-    ///
-    /// # Errors
-    /// Vulkan's own.
     pub fn new(image: &Arc<Image>, desc: &ViewDesc) -> Result<View> {
         View::swizzled(image, desc, vk::ComponentMapping::default())
     }
 
     /// A view whose alpha is 1, whatever the image holds there.
-    ///
-    /// # Errors
-    /// Vulkan's own.
     pub(super) fn opaque(image: &Arc<Image>, desc: &ViewDesc) -> Result<View> {
         let one = vk::ComponentSwizzle::ONE;
         View::swizzled(
@@ -568,7 +544,6 @@ pub struct Upload {
 }
 
 impl Upload {
-    /// Starts collecting.
     pub fn new(gpu: &Arc<Gpu>) -> Upload {
         Upload {
             gpu: gpu.clone(),
@@ -590,9 +565,6 @@ impl Upload {
     }
 
     /// A device buffer with this content.
-    ///
-    /// # Errors
-    /// Out of memory.
     pub fn buffer(
         &mut self,
         name: &str,
@@ -615,9 +587,6 @@ impl Upload {
     }
 
     /// Fills an image, `parts[layer][mip]`, and leaves it ready to be sampled.
-    ///
-    /// # Errors
-    /// Out of memory.
     pub fn image(&mut self, image: &Arc<Image>, parts: &[Vec<&[u8]>]) -> Result<()> {
         let mut bytes: Vec<u8> = Vec::new();
         let mut regions = Vec::new();
@@ -651,9 +620,6 @@ impl Upload {
     }
 
     /// Submits and waits.
-    ///
-    /// # Errors
-    /// Vulkan's own.
     pub fn finish(self) -> Result<()> {
         Commands::once(&self.gpu, |commands| {
             for (buffer, staging) in &self.buffers {

@@ -7,7 +7,7 @@
 
 mod command;
 mod debug;
-pub mod format;
+pub(crate) mod format;
 mod gpu;
 mod memory;
 mod painter;
@@ -16,19 +16,21 @@ mod sampler;
 mod share;
 mod surface;
 
-pub use ash::vk;
-pub use command::{Commands, FrameSlot, Recording};
-pub use format::Format;
-pub use gpu::{DeviceInfo, Faults, Features, Gpu, GpuOptions, list_devices};
-pub use memory::{Bare, Buffer, Image, ImageDesc, Upload, View, ViewDesc, lay_together};
-pub use painter::{Painter, PixelSource, Pixels};
-pub use pipeline::{
+pub(crate) use ash::vk;
+pub(crate) use command::{Commands, FrameSlot, Recording};
+pub(crate) use format::Format;
+pub use gpu::{DeviceInfo, Faults, Features, GpuOptions};
+pub(crate) use gpu::{Gpu, list_devices};
+pub(crate) use memory::{Bare, Buffer, Image, ImageDesc, Upload, View, ViewDesc, lay_together};
+pub(crate) use painter::{Painter, PixelSource, Pixels};
+pub use pipeline::Stage;
+pub(crate) use pipeline::{
     Attachments, BindingDesc, Blend, DescriptorPool, DescriptorSet, DescriptorWrite, DrawState,
-    Pipeline, PipelineDesc, SpecValue, Stage, StageDesc,
+    Pipeline, PipelineDesc, StageDesc,
 };
-pub use sampler::{Sampler, SamplerDesc};
-pub use share::DeviceId;
-pub use surface::{Surface, WindowHandles};
+pub(crate) use sampler::{Sampler, SamplerDesc};
+pub(crate) use share::DeviceId;
+pub(crate) use surface::Surface;
 
 /// What went wrong in the Vulkan layer, and what a user can do about it.
 #[derive(Debug, thiserror::Error)]

@@ -45,7 +45,6 @@ struct Picture {
 pub struct Pixels<'a> {
     /// Number of the picture, below the number that the painter was made with.
     pub picture: usize,
-    /// Width and height.
     pub size: [u32; 2],
     /// RGBA, 8 bits each, tightly packed.
     pub source: PixelSource<'a>,
@@ -60,7 +59,6 @@ pub enum PixelSource<'a> {
     Shared(&'a Arc<Buffer>),
 }
 
-/// Paints user interfaces.
 pub struct Painter {
     renderer: Option<Renderer<DefaultAllocator>>,
     pictures: Vec<Picture>,
@@ -117,9 +115,6 @@ impl Painter {
     }
 
     /// A painter into an image, read back with [`Painter::read`].
-    ///
-    /// # Errors
-    /// Out of memory.
     pub fn offscreen(gpu: &Arc<Gpu>, pictures: usize) -> Result<Painter> {
         Painter::new(
             gpu,
@@ -249,9 +244,6 @@ impl Painter {
 
     /// Paints a frame: changes textures, copies pictures, draws, presents. `false` if there was nothing to paint on (a
     /// window without area, or one that does not take pictures now).
-    ///
-    /// # Errors
-    /// The device was lost, out of memory.
     pub fn paint(
         &mut self,
         size: (u32, u32),

@@ -35,7 +35,7 @@ impl Stage {
     ];
 
     /// The stage that a file name's extension means.
-    pub fn of_file(name: &str) -> Option<Stage> {
+    pub(crate) fn of_file(name: &str) -> Option<Stage> {
         let extension = name.rsplit_once('.')?.1;
         Stage::ALL
             .iter()
@@ -75,18 +75,14 @@ pub type SpecValue = u32;
 pub struct StageDesc {
     /// Stage of the shader.
     pub stage: Stage,
-    /// The module's words.
     pub spirv: Arc<Vec<u32>>,
-    /// (constant id, value).
     pub constants: Vec<(u32, SpecValue)>,
 }
 
 /// One binding of the set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BindingDesc {
-    /// Binding number.
     pub binding: u32,
-    /// Kind.
     pub kind: vk::DescriptorType,
     /// The stage that uses it.
     pub stage: Stage,
@@ -97,7 +93,6 @@ pub struct BindingDesc {
 pub struct Attachments {
     /// Colour formats by location.
     pub color: Vec<vk::Format>,
-    /// Depth format.
     pub depth: Option<vk::Format>,
 }
 
@@ -148,7 +143,6 @@ impl Blend {
 /// Fixed-function state of a raster pipeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawState {
-    /// Primitives.
     pub topology: vk::PrimitiveTopology,
     /// Culled faces (counter-clockwise is front).
     pub cull: vk::CullModeFlags,
@@ -171,9 +165,7 @@ pub struct DrawState {
 /// A pipeline to make.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PipelineDesc {
-    /// Name for debuggers.
     pub name: String,
-    /// Shader stages.
     pub stages: Vec<StageDesc>,
     /// Bindings of the shaders.
     pub bindings: Vec<BindingDesc>,
@@ -195,9 +187,6 @@ pub struct Pipeline {
 
 impl Pipeline {
     /// Makes a pipeline.
-    ///
-    /// # Errors
-    /// What the driver refuses.
     pub fn new(gpu: &Arc<Gpu>, desc: &PipelineDesc) -> Result<Pipeline> {
         let bindings: Vec<_> = desc
             .bindings
@@ -452,19 +441,14 @@ pub struct DescriptorSet(pub(super) vk::DescriptorSet);
 
 /// What a binding is set to.
 pub enum DescriptorWrite<'a> {
-    /// A whole buffer.
     Buffer(&'a Buffer),
     /// A sampled image in a layout.
     Sampled(&'a View, &'a Sampler, vk::ImageLayout),
-    /// A storage image.
     Storage(&'a View),
 }
 
 impl DescriptorPool {
     /// A pool with room for the sets of these pipelines' bindings.
-    ///
-    /// # Errors
-    /// Out of memory.
     pub fn new(gpu: &Arc<Gpu>, sets: u32, kinds: &[vk::DescriptorType]) -> Result<DescriptorPool> {
         let count = |kind: vk::DescriptorType| {
             let n = kinds.iter().filter(|k| **k == kind).count();

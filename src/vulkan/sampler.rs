@@ -8,7 +8,6 @@ use std::sync::Arc;
 pub struct SamplerDesc {
     /// Between texels.
     pub filter: vk::Filter,
-    /// Between mips.
     pub mip_filter: vk::SamplerMipmapMode,
     /// Outside [0, 1].
     pub address: vk::SamplerAddressMode,
@@ -20,7 +19,6 @@ pub struct SamplerDesc {
     pub anisotropic: bool,
 }
 
-/// A sampler.
 pub struct Sampler {
     gpu: Arc<Gpu>,
     pub(super) handle: vk::Sampler,
@@ -28,9 +26,6 @@ pub struct Sampler {
 
 impl Sampler {
     /// Makes a sampler.
-    ///
-    /// # Errors
-    /// Vulkan's own.
     pub fn new(gpu: &Arc<Gpu>, desc: &SamplerDesc) -> Result<Sampler> {
         let anisotropic = desc.anisotropic && gpu.info.features.anisotropy;
         let info = vk::SamplerCreateInfo::default()

@@ -72,9 +72,6 @@ struct Handed {
 #[cfg(unix)]
 impl Buffer {
     /// A buffer in the device's memory that another device may take too ([`Buffer::taken`]).
-    ///
-    /// # Errors
-    /// Out of memory.
     pub fn shareable(gpu: &Arc<Gpu>, name: &str, size: u64) -> Result<Buffer> {
         let mut buffer = Buffer::external(gpu, name, size)?;
         // SAFETY: the handle is this device's.
@@ -177,12 +174,9 @@ impl Buffer {
         // SAFETY: the memory was made to be exported as this; each call makes a descriptor of its own.
         let file = unsafe { loader.get_memory_fd(&info) }
             .map_err(VulkanError::at("share a picture's memory"))?;
-        // SAFETY: the descriptor is new and nobody else's.
-        Ok(Handed {
-            file: unsafe { OwnedFd::from_raw_fd(file) },
-            bytes,
-            kind,
-        })
+        // SAFETY: the descriptor is new and has no other owner.
+        let file = unsafe { OwnedFd::from_raw_fd(file) };
+        Ok(Handed { file, bytes, kind })
     }
 
     fn external(gpu: &Arc<Gpu>, name: &str, size: u64) -> Result<Buffer> {
@@ -201,17 +195,11 @@ impl Buffer {
 #[cfg(not(unix))]
 impl Buffer {
     /// No buffer: this system's kind of sharing is not built.
-    ///
-    /// # Errors
-    /// Always; devices say so ([`super::Features::shares_memory`]).
     pub fn shareable(_: &Arc<Gpu>, name: &str, size: u64) -> Result<Buffer> {
         Err(out_of_memory(name, size))
     }
 
     /// No buffer, as [`Buffer::shareable`].
-    ///
-    /// # Errors
-    /// Always.
     pub fn taken(_: &Arc<Gpu>, name: &str, from: &Buffer) -> Result<Buffer> {
         Err(out_of_memory(name, from.size))
     }

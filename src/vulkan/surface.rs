@@ -46,9 +46,6 @@ impl Surface {
     }
 
     /// Makes it anew after it was lost.
-    ///
-    /// # Errors
-    /// The window is gone.
     pub(super) fn renew(&mut self) -> Result<()> {
         let handle = create(&self.gpu, &self.window)?;
         // SAFETY: no swapchain of the old surface is alive.

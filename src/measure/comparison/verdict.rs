@@ -8,11 +8,9 @@ use std::fmt;
 /// The better of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Verdict {
-    /// The first.
     A,
     /// The second.
     B,
-    /// Neither.
     #[serde(rename = "equal")]
     Equal,
     /// Not to be told: the reference's noise is as large as the difference.

@@ -17,7 +17,7 @@ pub struct Score {
     /// |E|.
     pub exact: u64,
     /// Cells too near to say.
-    pub borderline: u64,
+    pub(crate) borderline: u64,
     /// |E \ V|.
     pub holes: u64,
     /// |V \ E|.
@@ -39,13 +39,13 @@ pub struct Score {
     /// Over V & E: root of the mean squared difference of a linear base colour's channel, and the largest.
     pub color_rms: f64,
     /// The largest difference of a channel.
-    pub color_max: f64,
+    pub(crate) color_max: f64,
     /// Mean angle between normals where the exact ones agree by more than half, degrees.
-    pub normal_mean: f64,
+    pub(crate) normal_mean: f64,
     /// Mean of opacity less exact coverage.
-    pub opacity_bias: f64,
+    pub(crate) opacity_bias: f64,
     /// Root mean square of the same.
-    pub opacity_rms: f64,
+    pub(crate) opacity_rms: f64,
     /// The scores by class of triangle.
     pub shapes: BTreeMap<String, ShapeScore>,
 }
@@ -53,7 +53,6 @@ pub struct Score {
 /// Figures of the cells that triangles of a class overlap; others may overlap them too.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ShapeScore {
-    /// Exact cells.
     pub exact: u64,
     /// Cells that the voxelizer misses.
     pub holes: u64,
@@ -70,7 +69,6 @@ pub struct ShapeScore {
 /// The figures, and cells by number.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// The figures.
     pub score: Score,
     /// In both sets, or borderline and in the voxelizer's.
     pub right: Vec<u32>,

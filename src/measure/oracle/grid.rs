@@ -81,7 +81,7 @@ impl Grid {
     }
 
     /// Edges (m) of the cell at a point, or of the nearest one.
-    pub fn edges_at(&self, p: DVec3) -> DVec3 {
+    pub(crate) fn edges_at(&self, p: DVec3) -> DVec3 {
         let edge = |axis: usize| {
             let borders = &self.borders[axis];
             let i = borders

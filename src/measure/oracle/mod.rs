@@ -15,13 +15,15 @@ mod surface;
 mod triangle;
 
 pub use clip::{Corner, clip};
-pub use compare::{Comparison, Score, ShapeScore, compare};
+pub(crate) use compare::Comparison;
+pub use compare::{Score, compare};
 pub use cubes::cubes;
 pub use exact::{Cell, exact};
 pub use fill::{Neighbours, flood};
 pub use grid::Grid;
 pub use overlap::{Axes, Overlap};
-pub use read::{Voxel, grid, makes_voxels, mistake, modes, read, wanted};
-pub use shape::{SHAPES, shape_of};
+pub(crate) use read::{Voxel, makes_voxels};
+pub use read::{grid, mistake, modes, read, wanted};
+pub(crate) use shape::SHAPES;
 pub use surface::Surfaces;
 pub use triangle::{Triangle, triangles_of};

@@ -159,9 +159,6 @@ pub fn read(session: &mut Session) -> Result<(Grid, Vec<Voxel>), LabError> {
 }
 
 /// Where the cells of the last frame lie.
-///
-/// # Errors
-/// As [`read`].
 pub fn grid(session: &mut Session) -> Result<Grid, LabError> {
     let v = declared(&session.graph)?;
     let index = session.graph.texture(&v.occupied);

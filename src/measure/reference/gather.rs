@@ -80,9 +80,6 @@ impl Traced {
 
 impl Tracer {
     /// [`gather`], with the means of both halves of the samples.
-    ///
-    /// # Errors
-    /// As [`gather`].
     pub fn gather(
         &mut self,
         lab: &Lab,

@@ -5,8 +5,10 @@ mod gather;
 mod key;
 mod store;
 
-pub use gather::{Gathered, Goal, Tracer, gather};
-pub use key::{GRAPH, experiment_for};
+pub(crate) use gather::{Gathered, Tracer};
+pub use gather::{Goal, gather};
+pub use key::GRAPH;
+pub(crate) use key::experiment_for;
 
 use crate::experiment::Experiment;
 use crate::graph::Graph;
@@ -18,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Turns of a path that hold all light that matters: what methods are compared with where nothing else is asked for.
-pub const ALL_BOUNCES: u32 = 64;
+pub(crate) const ALL_BOUNCES: u32 = 64;
 
 /// A reference picture with its parts.
 #[derive(Clone, Debug)]
@@ -56,18 +58,12 @@ pub struct ReferencePart {
 }
 
 /// A number of the shaders that references are made with, 64 hexadecimal digits.
-///
-/// # Errors
-/// A graph of references that cannot be read.
 pub fn shaders(home: &Workspace) -> Result<String, LabError> {
     let loaded = home.load(GRAPH).map_err(LabError::Input)?;
     Ok(key::shaders(&loaded))
 }
 
 /// The reference of an experiment for so many bounces, if it has been gathered. `scene` is lit as the experiment says.
-///
-/// # Errors
-/// A camera or a graph that cannot be read; a file that cannot be.
 pub fn find(
     home: &Workspace,
     experiment: &Experiment,

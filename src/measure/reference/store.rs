@@ -69,7 +69,6 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Without samples.
     pub fn new(size: (u32, u32), parts: &[LightPart]) -> Sums {
         let pixels = size.0 as usize * size.1 as usize;
         let empty = |p: &LightPart| {

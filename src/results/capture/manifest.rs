@@ -26,7 +26,6 @@ const MAX_FRAMES: usize = 1_000_000;
 pub struct SceneRecord {
     /// Built-in name, or path as it was given.
     pub spec: String,
-    /// Its name.
     pub name: String,
     /// SHA-256 of its content ([`super::scene_hash`]).
     pub sha256: String,
@@ -39,9 +38,7 @@ pub struct Image {
     pub file: String,
     /// Texture of the graph.
     pub texture: String,
-    /// Mip.
     pub mip: u32,
-    /// Layer.
     pub layer: u32,
 }
 
@@ -49,9 +46,8 @@ pub struct Image {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// [`SCHEMA`].
-    pub schema: String,
-    /// Program version.
-    pub version: String,
+    pub(crate) schema: String,
+    pub(crate) version: String,
     /// Device.
     pub device: String,
     /// Driver and its version.
@@ -70,8 +66,7 @@ pub struct Manifest {
     pub frames: usize,
     /// Time from frame to frame, s.
     pub step: f64,
-    /// Pictures.
-    pub images: Vec<Image>,
+    pub(crate) images: Vec<Image>,
     /// SHA-256 of every other file, by path in the capture.
     pub files: BTreeMap<String, String>,
 }

@@ -7,10 +7,12 @@ mod replay;
 mod scene_hash;
 mod take;
 
-pub use list::{Summary, list, sweep_partials};
-pub use manifest::{Image, Manifest, SCHEMA, SceneRecord};
+pub(crate) use list::Summary;
+pub use list::{list, sweep_partials};
+pub use manifest::Manifest;
+pub(crate) use manifest::{Image, SCHEMA, SceneRecord};
 pub use parts::parts;
-pub use replay::{Difference, Replay, changes, replay};
+pub use replay::{changes, replay};
 pub use scene_hash::scene_hash;
 pub use take::{Resource, What, free_name, take};
 

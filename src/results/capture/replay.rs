@@ -26,11 +26,9 @@ pub struct Difference {
 /// Differences between a capture and the same one made again.
 #[derive(Clone, Debug, Default)]
 pub struct Replay {
-    /// Pictures compared.
     pub images: usize,
     /// Texels compared.
     pub texels: usize,
-    /// Pictures that differ.
     pub differences: Vec<Difference>,
     /// What else is not as it was: program, device, driver, scene.
     pub changes: Vec<String>,

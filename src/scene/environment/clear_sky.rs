@@ -34,9 +34,6 @@ pub(in crate::scene) struct ClearSky {
 }
 
 /// The picture of a clear sky.
-///
-/// # Errors
-/// Numbers that are no sky.
 pub(in crate::scene) fn clear_sky(sky: &ClearSky) -> Result<Environment, String> {
     let &ClearSky {
         width,

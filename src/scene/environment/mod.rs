@@ -24,7 +24,6 @@ pub const SUN: &str = "sun of the sky";
 pub struct Environment {
     /// The file, if it is of one.
     pub file: Option<PathBuf>,
-    /// The picture.
     pub picture: Arc<SkyPicture>,
     /// Degrees about y: at 90 what the picture has in its middle lies towards -x.
     pub rotation: f32,
@@ -99,9 +98,6 @@ impl Environment {
 
 impl Scene {
     /// The scene under another picture of the sky; an empty path leaves it as it is.
-    ///
-    /// # Errors
-    /// A picture that cannot be read.
     pub fn under(mut self, file: &Path) -> Result<Scene, SceneError> {
         if !file.as_os_str().is_empty() {
             let read = file::read(file, &mut self.warnings)
@@ -132,9 +128,6 @@ fn direction(u: f32, v: f32) -> Vec3 {
 }
 
 /// What is wrong with the numbers of an environment.
-///
-/// # Errors
-/// The text for the user.
 pub(crate) fn check(rotation: f32, intensity: f32) -> Result<(), String> {
     if !rotation.is_finite() || rotation.abs() > 36_000.0 {
         return Err("the environment's rotation must be a number of degrees, at most 36000".into());

@@ -22,9 +22,6 @@ pub(super) fn any(mesh: &Mesh) -> bool {
 }
 
 /// Offsets for each vertex of the file. Their number is taken off `room`.
-///
-/// # Errors
-/// There is no room.
 pub(super) fn morphs(mesh: &Mesh, room: &mut usize) -> Result<Vec<Morph>, String> {
     let rest = Smooth::of(mesh, None);
     let morph = |(_, key): (_, &BlendKeyframe)| {

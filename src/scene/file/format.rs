@@ -321,7 +321,6 @@ fn rotation(degrees: Vec3) -> Quat {
     Quat::from_rotation_z(z) * Quat::from_rotation_y(y) * Quat::from_rotation_x(x)
 }
 
-/// A light.
 #[derive(Debug, Deserialize)]
 #[serde(try_from = "LightFields")]
 pub(super) struct LightEntry(Light);
@@ -431,7 +430,6 @@ impl LightEntry {
     }
 }
 
-/// A view.
 #[derive(Debug, Deserialize)]
 #[serde(try_from = "CameraFields")]
 pub(super) struct CameraEntry(CameraFields);

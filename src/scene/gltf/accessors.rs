@@ -31,7 +31,6 @@ pub(super) fn floats<const N: usize>(
     read(accessor, buffers, element)
 }
 
-/// Unsigned integers.
 pub(super) fn indices(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<u32>, String> {
     check_type(accessor, buffers)?;
     let kind = accessor.data_type();

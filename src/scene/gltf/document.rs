@@ -16,7 +16,6 @@ use crate::scene::warnings::Warnings;
 /// A document that has been checked.
 pub(super) struct Checks {
     pub document: Document,
-    /// The binary chunk.
     pub blob: Option<Vec<u8>>,
     /// Accessors of a type that the format does not have: whoever needs one fails.
     pub unreadable: HashSet<usize>,

@@ -52,7 +52,6 @@ impl Means {
         self.of(info, true)
     }
 
-    /// Of data.
     pub fn data(&self, info: Option<&texture::Info>) -> Vec4 {
         self.of(info, false)
     }

@@ -68,7 +68,6 @@ impl<T: Value> Curve<T> {
         &self.values
     }
 
-    /// Values between keys.
     pub fn interpolation(&self) -> Interpolation {
         self.interpolation
     }

@@ -19,7 +19,7 @@ pub struct Deformer {
     /// Position, normal and tangent of its first vertices before all that moves them.
     pub rest: Vec<Vertex>,
     /// Shapes that are added.
-    pub morphs: Vec<Morph>,
+    pub(crate) morphs: Vec<Morph>,
     /// The weight of each morph over time.
     pub weights: Vec<Curve<f32>>,
     /// Seconds after which weights start over.
@@ -27,9 +27,9 @@ pub struct Deformer {
     /// The joints of the skin; none: there is no skin.
     pub joints: Vec<Joint>,
     /// The influences of all vertices, in the order of vertices.
-    pub influences: Vec<Influence>,
+    pub(crate) influences: Vec<Influence>,
     /// The influences of each vertex, as a range of the list.
-    pub influenced: Vec<Range<u32>>,
+    pub(crate) influenced: Vec<Range<u32>>,
     /// Whether each vertex has the normal of its triangle in every pose. Empty: none.
     pub flat: Vec<bool>,
     /// The ends of the split edge for each vertex after those of `rest`; both come before the vertex.

@@ -10,8 +10,10 @@ use std::sync::Arc;
 
 use glam::{Mat4, Quat, Vec3};
 
-pub use curve::{Curve, Interpolation, Value};
-pub use deform::{Deformer, Influence, Joint, Morph};
+pub use curve::Value;
+pub(crate) use curve::{Curve, Interpolation};
+pub use deform::Deformer;
+pub(crate) use deform::{Influence, Joint, Morph};
 pub(in crate::scene) use rig::{Posing, Rig, Rigs, attach};
 
 use super::{Instance, Scene};
@@ -130,8 +132,7 @@ fn sorted(mut times: Vec<f32>) -> Vec<f32> {
 }
 
 impl Scene {
-    /// Whether anything moves.
-    pub fn moves(&self) -> bool {
+    pub(crate) fn moves(&self) -> bool {
         !self.deformers.is_empty() || self.instances.iter().any(|i| i.mover.is_some())
     }
 

@@ -94,7 +94,6 @@ pub(super) fn read(
 
 struct Reader<'a> {
     all: Geometry,
-    /// The line's number.
     number: usize,
     object: String,
     material: Option<u32>,

@@ -37,7 +37,6 @@ enum Pattern {
     Marble,
     RoofTiles,
     Wood,
-    /// Of this colour.
     Cloth(Vec3),
     /// With alpha, for masking at 0.5.
     Leaves,

@@ -194,7 +194,6 @@ pub(in crate::scene) struct Sprigs {
     grows: Grows,
 }
 
-/// How sprigs grow.
 #[derive(Clone, Copy, Debug, Deserialize)]
 enum Grows {
     /// A bush of so many, its foot at the origin.

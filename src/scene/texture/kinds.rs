@@ -14,8 +14,7 @@ pub const SHARED_EDGE: u32 = 512;
 pub type TextureKind = (u32, u32, u32, TextureFormat);
 
 impl Texture {
-    /// Its kind.
-    pub fn kind(&self) -> TextureKind {
+    pub(crate) fn kind(&self) -> TextureKind {
         (
             self.width,
             self.height,

@@ -22,10 +22,10 @@ use super::warnings::Warnings;
 use super::{SceneError, Texture, TextureFormat};
 
 pub(super) use content::Holes;
-pub use decode::SmallPicture;
+pub(crate) use decode::SmallPicture;
 pub(super) use decode::{MAX_FILE_BYTES, decode_limited, first_level_rgba};
 pub(super) use kinds::with_kinds_told;
-pub use kinds::{MAX_TEXTURE_KINDS, SHARED_EDGE, TextureKind, keep_their_size};
+pub(crate) use kinds::{MAX_TEXTURE_KINDS, SHARED_EDGE, TextureKind, keep_their_size};
 pub(super) use mips::{Filter, texture_from_rgba};
 
 /// Where an image's bytes come from.
