@@ -1,6 +1,6 @@
-//! Text of files that nobody has read yet, made fit to be shown.
+//! Makes untrusted text safe and short enough to print.
 
-/// A text without the control characters that a terminal obeys; tabs and ends of lines stay.
+/// The text without control characters that terminals interpret; tabs and line ends are kept.
 pub fn harmless(text: &str) -> String {
     text.chars().map(plain).collect()
 }
@@ -13,7 +13,7 @@ fn plain(c: char) -> char {
     }
 }
 
-/// At most so many characters, with a mark where there are more, and nothing in it that a terminal would obey.
+/// At most `most` characters, with an ellipsis if shortened, and without control characters.
 pub fn excerpt(text: &str, most: usize) -> String {
     let mut out: String = text
         .chars()
@@ -26,7 +26,7 @@ pub fn excerpt(text: &str, most: usize) -> String {
     out
 }
 
-/// The part of a line round a column (from 1; 0 when it is not known), at most so many characters.
+/// At most `most` characters of a line around a column (from 1; 0 if unknown).
 pub fn excerpt_at(line: &str, column: usize, most: usize) -> String {
     let first = if column + 20 > most {
         column - most / 2
@@ -44,7 +44,7 @@ pub fn excerpt_at(line: &str, column: usize, most: usize) -> String {
     )
 }
 
-/// Names one after another, the middle of many left out.
+/// A chain of names, shortened in the middle.
 pub fn chain(names: &[String]) -> String {
     let short = |names: &[String]| {
         names

@@ -1,5 +1,5 @@
-//! RON files with positions: every value that can be wrong remembers where it stands, and one wrong item does not hide
-//! the mistakes in the others.
+//! RON files with positions: every checked value keeps its position, and an invalid item does not
+//! hide the errors of others.
 
 pub(crate) mod excerpt;
 pub(crate) mod panics;
@@ -12,42 +12,42 @@ use std::cell::RefCell;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// A place in a file, or a whole file when `line` is 0.
+/// A position in a file, or a whole file if `line` is 0.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Place {
-    /// The file as the user knows it.
+    /// The file as the user named it.
     pub file: PathBuf,
     /// Line, from 1.
     pub line: u32,
-    /// Column, from 1; 0 when only the line is known.
+    /// Column, from 1; 0 if only the line is known.
     pub column: u32,
 }
 
-/// How bad a finding is.
+/// Severity of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
-    /// Must be mended.
+    /// The input is rejected.
     Error,
-    /// Worth knowing.
+    /// The input is accepted.
     Warning,
 }
 
-/// One finding about an input file.
+/// A finding about an input file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// Severity.
     pub(crate) severity: Severity,
-    /// Where.
+    /// Position of the finding.
     pub place: Place,
-    /// What is wrong and what was expected.
+    /// The problem and what was expected.
     pub message: String,
-    /// What to do, for instance the nearest known name.
+    /// A remedy, for example the nearest known name.
     pub help: Option<String>,
     pub(crate) source: Option<String>,
 }
 
 impl Diagnostic {
-    /// An error at a place.
+    /// An error at a position.
     pub fn error(place: Place, message: impl Into<String>) -> Diagnostic {
         Diagnostic {
             severity: Severity::Error,
@@ -58,7 +58,7 @@ impl Diagnostic {
         }
     }
 
-    /// A warning at a place.
+    /// A warning at a position.
     pub fn warning(place: Place, message: impl Into<String>) -> Diagnostic {
         Diagnostic {
             severity: Severity::Warning,
@@ -66,13 +66,13 @@ impl Diagnostic {
         }
     }
 
-    /// With a hint.
+    /// Adds a hint.
     pub(crate) fn help(mut self, help: Option<String>) -> Diagnostic {
         self.help = help;
         self
     }
 
-    /// Messages one below the other.
+    /// Joins messages by line ends.
     pub fn joined(list: &[Diagnostic]) -> String {
         list.iter()
             .map(ToString::to_string)
@@ -80,22 +80,22 @@ impl Diagnostic {
             .join("\n")
     }
 
-    /// With the nearest of the known names, or all of them when they are few.
+    /// Suggests the nearest known name, or lists all names if they are few.
     pub fn nearest<'a>(self, name: &str, known: impl IntoIterator<Item = &'a str>) -> Diagnostic {
         let help = nearest(name, known);
         self.help(help)
     }
 }
 
-/// Characters of a message or hint that are shown: they may quote what is wrong.
+/// Maximum length of a printed message or hint; they may quote the input.
 const MAX_MESSAGE: usize = 2000;
-/// Characters of the offending line that are shown.
+/// Maximum length of a quoted line.
 const MAX_LINE: usize = 240;
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", harmless(&self.place.file.to_string_lossy()))?;
-        // What the command line gives has no lines.
+        // Command line arguments have no lines.
         let option = self.place.file.to_string_lossy().starts_with("--");
         if self.place.line > 0 && !option {
             write!(f, ":{}", self.place.line)?;
@@ -123,7 +123,7 @@ impl fmt::Display for Diagnostic {
     }
 }
 
-/// "did you mean 'x'?" when a known name is close, else the list of what there is when it is short.
+/// "did you mean 'x'?" if a known name is close, else a list of known names if it is short.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let mut known: Vec<&str> = known.into_iter().collect();
     known.sort_unstable();
@@ -145,21 +145,21 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     }
 }
 
-/// A value with the byte offset where it stands in its file.
+/// A value with its position.
 #[derive(Clone, Debug)]
 pub struct Loc<T> {
-    /// The value.
+    /// The parsed value.
     pub value: T,
-    /// Its place.
+    /// Position in its file.
     pub at: At,
 }
 
-/// File number and byte offset.
+/// File index and byte offset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct At {
     /// Index in [`Sources`].
     pub(crate) file: u32,
-    /// Bytes from the start.
+    /// Offset from the start of the file [bytes].
     pub offset: u32,
 }
 
@@ -173,7 +173,7 @@ pub struct Sources {
 const MAX_BYTES: u64 = 4 << 20;
 
 impl Sources {
-    /// Reads a file; the error says which and why.
+    /// Reads a file and returns its index.
     pub fn read(&mut self, path: &Path) -> Result<u32, Diagnostic> {
         let fail = |why: String| {
             Diagnostic::error(
@@ -204,7 +204,7 @@ impl Sources {
         self.files.iter().map(|(p, t)| (p.as_path(), t.as_str()))
     }
 
-    /// Whether all files read are still as they were.
+    /// Whether the files on disk are unchanged.
     pub(crate) fn are_current(&self) -> bool {
         self.files
             .iter()
@@ -226,7 +226,7 @@ impl Sources {
         }
     }
 
-    /// An error at an offset, with the line it stands in.
+    /// An error at an offset, with its source line.
     pub fn error(&self, at: At, message: impl Into<String>) -> Diagnostic {
         let place = self.place(at);
         let source = self
@@ -240,8 +240,8 @@ impl Sources {
         }
     }
 
-    /// Parses a file into `T`. Wrong items inside [`Items`] and [`Entries`] are reported and left out; the names in them
-    /// are added to `broken`, so that what refers to them is not reported as well.
+    /// Parses a file into `T`. Invalid items of [`Items`] and [`Entries`] are reported and skipped.
+    /// Their names are added to `broken`, so that references to them are not reported too.
     pub fn parse<'s, T: Deserialize<'s>>(
         &'s self,
         file: u32,
@@ -280,7 +280,8 @@ impl Sources {
     }
 }
 
-/// How RON is read everywhere: `Some(x)` may be written `x`, and `Variant((a: 1))` as `Variant(a: 1)`.
+/// RON options of the program: `Some(x)` may be written `x`, and `Variant((a: 1))` as `Variant(a:
+/// 1)`.
 pub fn options() -> ron::Options {
     ron::Options::default()
         .with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_VARIANT_NEWTYPES)
@@ -298,10 +299,10 @@ thread_local! {
     static CONTEXT: RefCell<Option<Context>> = const { RefCell::new(None) };
 }
 
-/// Marks an error that was already reported where it stands.
+/// Marks an error that has been reported at its position.
 const REPORTED: &str = "(reported)";
 
-/// What a file with more nested brackets than the parser reads is told.
+/// Error for files with more nested brackets than the parser supports.
 pub(crate) const TOO_DEEP: &str = "brackets are nested too deeply; remove brackets around this";
 
 fn explain(error: &ron::Error) -> (String, Option<String>) {
@@ -348,7 +349,7 @@ fn offset_of(text: &str, line: usize, column: usize) -> u32 {
     u32::try_from((start + inside).min(text.len())).unwrap_or(0)
 }
 
-/// Offset of a slice of the file that is being parsed; 0 when it is none (values built in code).
+/// Offset of a slice of the file being parsed; 0 for values built in code.
 pub(super) fn offset_in_file(slice: &str) -> At {
     CONTEXT.with_borrow(|context| {
         context.as_ref().map_or(At::default(), |c| {
@@ -377,7 +378,7 @@ fn mark_broken<'a>(names: impl Iterator<Item = &'a str>) {
     });
 }
 
-/// Parses one raw value where it stands; a mistake is reported there, and `None` comes back.
+/// Parses a raw value; an error is reported at its position and gives `None`.
 fn parse_raw<'de, T: Deserialize<'de>>(raw: &'de ron::value::RawValue) -> Option<Loc<T>> {
     let text = raw.trim().get_ron();
     let at = offset_in_file(text);
@@ -392,7 +393,7 @@ fn parse_raw<'de, T: Deserialize<'de>>(raw: &'de ron::value::RawValue) -> Option
                     help,
                 );
             }
-            // Every quoted word of a broken item may be the name of something.
+            // Any quoted word of an invalid item may be a name.
             mark_broken(text.split('"').skip(1).step_by(2));
             None
         }
@@ -406,7 +407,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Loc<T> {
     }
 }
 
-/// Reads what stands in a raw value; a mistake is reported where it stands.
+/// Parses the content of a raw value; errors are reported at their position.
 pub(super) fn nested<'de, T: Deserialize<'de>, E: serde::de::Error>(
     raw: &'de ron::value::RawValue,
 ) -> Result<T, E> {
@@ -415,7 +416,7 @@ pub(super) fn nested<'de, T: Deserialize<'de>, E: serde::de::Error>(
         .ok_or_else(|| E::custom(REPORTED))
 }
 
-/// A list whose wrong items are reported and left out.
+/// A list; invalid items are reported and skipped.
 #[derive(Clone, Debug)]
 pub struct Items<T>(pub Vec<Loc<T>>);
 
@@ -432,7 +433,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Items<T> {
     }
 }
 
-/// A map, in the order written, whose wrong values are reported and left out.
+/// A map in file order; invalid values are reported and skipped.
 #[derive(Clone, Debug)]
 pub struct Entries<T>(pub Vec<(Loc<String>, Loc<T>)>);
 
@@ -504,7 +505,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for TwoOrThree<T> {
     }
 }
 
-/// A RON value kept as text, to be read by the parameter it is for.
+/// A RON value kept as text; its parameter parses it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RawText(pub String);
 

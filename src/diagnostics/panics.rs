@@ -1,4 +1,4 @@
-//! Panics as errors: those of other people's readers, and what any of them said.
+//! Panics as errors, from third-party readers and in general.
 
 use crate::diagnostics::excerpt::excerpt;
 use std::any::Any;
@@ -7,12 +7,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::Once;
 
 thread_local! {
-    /// Whether a panic of this thread is caught and told.
+    /// Whether panics of this thread are caught and reported.
     static CAUGHT: Cell<bool> = const { Cell::new(false) };
     static PLACE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Runs a reader of files that may panic on what it did not expect. What it was working on is lost with it.
+/// Runs a third-party reader that may panic on unexpected input; its intermediate state is lost.
 pub fn caught<T>(read: impl FnOnce() -> T) -> Result<T, String> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
@@ -24,7 +24,7 @@ pub fn caught<T>(read: impl FnOnce() -> T) -> Result<T, String> {
             let place = panic
                 .location()
                 .map_or(String::new(), |l| format!("{}:{}", l.file(), l.line()));
-            // Of a dependency: its name and version, and the file in it.
+            // For a dependency: its name and version, and the file in it.
             let crates = place
                 .find("/registry/src/")
                 .and_then(|i| place[i + 14..].find('/').map(|j| i + 15 + j));
@@ -37,7 +37,7 @@ pub fn caught<T>(read: impl FnOnce() -> T) -> Result<T, String> {
     result.map_err(|panic| message(&*panic))
 }
 
-/// What a panic said.
+/// The message of a panic.
 pub fn said(panic: &(dyn Any + Send)) -> &str {
     let text = panic.downcast_ref::<&str>().copied();
     text.or_else(|| panic.downcast_ref::<String>().map(String::as_str))

@@ -1,4 +1,4 @@
-//! An experiment's changes to the light of its scene.
+//! Applies an experiment's changes to the lighting of its scene.
 
 use super::ExperimentError;
 use super::{Experiment, LightChange};
@@ -9,7 +9,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 impl Experiment {
-    /// All that [`Experiment::adapt_scene`] changes, as text: experiments of one text light a scene alike.
+    /// All changes of [`Experiment::adapt_scene`] as text; equal texts give equal lighting.
     pub fn light(&self) -> String {
         let lights: Vec<String> = self
             .lights
@@ -79,7 +79,8 @@ impl Experiment {
         Ok(())
     }
 
-    /// Like [`Experiment::adapt_scene`] for a scene that others share: it is copied only if something changes.
+    /// Like [`Experiment::adapt_scene`] for a shared scene, which is copied only if something
+    /// changes.
     pub fn adapted(&self, scene: Arc<Scene>) -> Result<Arc<Scene>, ExperimentError> {
         let name = scene.name.clone();
         let (lights, environment) = (scene.lights.clone(), scene.environment.clone());
@@ -112,7 +113,7 @@ impl Experiment {
     }
 }
 
-/// The change that makes any light of that kind and name like this one.
+/// The change that turns any light of the same kind and name into this one.
 pub(super) fn change_to(light: &Light) -> LightChange {
     let directed = !matches!(light.kind, LightKind::Point);
     let placed = !matches!(light.kind, LightKind::Directional);
@@ -159,7 +160,7 @@ fn apply(change: &LightChange, light: &mut Light) -> Result<(), String> {
     Ok(())
 }
 
-/// What is a unit vector already keeps its bits, so that a direction that was written out is read as it was.
+/// Unit vectors keep their bits, so that a written direction is read back unchanged.
 fn unit(v: Vec3) -> Vec3 {
     if v.is_normalized() {
         v

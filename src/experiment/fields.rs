@@ -1,4 +1,4 @@
-//! The fields of an experiment that have a name and a value: who writes, changes or compares experiments reads them here.
+//! Named fields of an experiment, the common table for writing, editing and comparing experiments.
 
 use super::read::{check_sky, check_time, in_folder, scene_path};
 use super::write::{
@@ -13,17 +13,17 @@ use std::path::Path;
 
 /// A field of an experiment.
 pub struct Field {
-    /// Its name in files.
+    /// Name in files.
     pub name: &'static str,
     set: fn(&mut Experiment, &Given) -> Result<(), String>,
     text: fn(&Experiment, &Path) -> String,
-    /// Whether leaving it out says the same.
+    /// Whether the field has its default.
     pub(super) absent: fn(&Experiment) -> bool,
-    /// Whether two experiments say the same.
+    /// Whether two experiments agree in this field.
     pub same: fn(&Experiment, &Experiment) -> bool,
 }
 
-/// All of them; every other setting is a parameter's.
+/// All fields; every other setting is a graph parameter.
 pub static FIELDS: &[Field] = &[
     Field {
         name: "graph",
@@ -102,7 +102,7 @@ pub static FIELDS: &[Field] = &[
     },
 ];
 
-/// A value in RON, the folder in which files are looked up, and where it stands.
+/// A value in RON, its position, and the folder for relative paths.
 struct Given<'g> {
     name: &'static str,
     text: &'g str,
@@ -120,20 +120,20 @@ impl Given<'_> {
 }
 
 impl Field {
-    /// The field of a name.
+    /// The field with this name.
     pub fn of(name: &str) -> Option<&'static Field> {
         FIELDS.iter().find(|f| f.name == name)
     }
 
-    /// What an experiment says, as RON in the file of that path; empty where it says nothing.
+    /// The value as RON in the file `path`; empty if not set.
     pub fn text(&self, experiment: &Experiment, path: &Path) -> String {
         (self.text)(experiment, path)
     }
 
-    /// Sets it to a value in RON that stands at `at` of the experiment's sources.
+    /// Sets the value from RON at the position `at` of the experiment's sources.
     ///
     /// # Errors
-    /// Another value than the field takes: the text for the user.
+    /// The value is invalid for the field.
     pub fn set(
         &self,
         experiment: &mut Experiment,

@@ -20,46 +20,46 @@ use crate::scene::{Camera, MAX_COORDINATE, environment};
 use glam::Vec3;
 use serde::Deserialize;
 
-/// Why an experiment or a camera path cannot be used, changed or written.
+/// Error of an experiment or camera path.
 #[derive(Debug, thiserror::Error)]
 pub enum ExperimentError {
-    /// Mistakes in its file, with their places.
+    /// Errors in its file, with positions.
     #[error("{}", Diagnostic::joined(.0))]
     Input(Vec<Diagnostic>),
-    /// Its file.
+    /// A file that cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// What was asked for and cannot be had.
+    /// A request that cannot be fulfilled.
     #[error("{0}")]
     Request(String),
 }
 
-/// The camera of a picture.
+/// Camera choice of an experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CameraChoice {
     /// A camera of the scene.
     Named(String),
-    /// Written out.
+    /// A camera given by numbers.
     Placed(PlacedCamera),
 }
 
-/// A camera written out.
+/// A camera given by numbers.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct PlacedCamera {
     /// Position, m.
     pub eye: (f32, f32, f32),
-    /// The point it looks at, m.
+    /// Look-at point [m].
     pub target: (f32, f32, f32),
-    /// What is up in the picture; need not be at right angles to the view.
+    /// Up direction; need not be orthogonal to the view.
     #[serde(default = "y_up")]
     pub up: (f32, f32, f32),
-    /// Vertical field of view, degrees.
+    /// Vertical field of view [degrees].
     pub fov_y: f32,
-    /// Distance of the near plane, m; from the scene's size when absent.
+    /// Distance of the near plane [m]; derived from the scene's size if absent.
     #[serde(default)]
     pub near: Option<f32>,
-    /// What files call the far plane, m; cuts off nothing.
+    /// Distance of the far plane [m]; unused when rendering, kept for export.
     #[serde(default)]
     pub far: Option<f32>,
 }
@@ -69,7 +69,7 @@ fn y_up() -> (f32, f32, f32) {
 }
 
 impl PlacedCamera {
-    /// A camera that stands upright, with a near plane from the scene's size.
+    /// An upright camera with the default near plane.
     pub fn new(eye: (f32, f32, f32), target: (f32, f32, f32), fov_y: f32) -> PlacedCamera {
         PlacedCamera {
             eye,
@@ -81,7 +81,7 @@ impl PlacedCamera {
         }
     }
 
-    /// What is wrong with its numbers.
+    /// Checks its numbers.
     pub fn check(&self) -> Result<(), String> {
         let numbers = [self.eye, self.target, self.up].map(|v| Vec3::from(v).is_finite());
         if numbers.contains(&false) || !self.fov_y.is_finite() {
@@ -120,36 +120,36 @@ impl From<&Camera> for PlacedCamera {
     }
 }
 
-/// What an experiment changes of a light; what is absent stays as the scene has it.
+/// Changes to a light; absent fields keep the scene's value.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
 #[serde(default, deny_unknown_fields)]
 pub struct LightChange {
-    /// Irradiance (directional) or radiant intensity, 0 or more.
+    /// Irradiance (directional) or radiant intensity, not negative.
     pub color: Option<(f32, f32, f32)>,
-    /// The way the light travels, of any length but 0.
+    /// Propagation direction, not zero; need not have unit length.
     pub direction: Option<(f32, f32, f32)>,
     /// Position, m.
     pub position: Option<(f32, f32, f32)>,
-    /// Half-angle of a spot's full strength, degrees.
+    /// Half-angle of full intensity of a spot [degrees].
     pub inner: Option<f64>,
-    /// Half-angle of a spot's end, degrees.
+    /// Outer half-angle of a spot [degrees].
     pub outer: Option<f64>,
 }
 
-/// What an experiment changes of the sky's picture; what is absent stays as the scene has it.
+/// Changes to the environment map; absent fields keep the scene's value.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(default, deny_unknown_fields)]
 pub struct EnvironmentChange {
-    /// HDR or EXR file of another picture; its rotation is 0 and its intensity 1 unless they are said.
+    /// HDR or EXR file of another environment map, with default rotation 0 and intensity 1.
     pub file: Option<String>,
-    /// Degrees about y.
+    /// Rotation about y [degrees].
     pub rotation: Option<f32>,
-    /// Factor of the picture, 0 or more; multiplies the experiment's `sky`.
+    /// Factor of the map, not negative; multiplies the experiment's `sky`.
     pub intensity: Option<f32>,
 }
 
 impl EnvironmentChange {
-    /// This, and what `over` says in its place.
+    /// These changes, overridden by `over`.
     pub(crate) fn overlaid(self, over: EnvironmentChange) -> EnvironmentChange {
         EnvironmentChange {
             file: over.file.or(self.file),
@@ -158,13 +158,13 @@ impl EnvironmentChange {
         }
     }
 
-    /// Whether its numbers can be.
+    /// Checks its numbers.
     pub fn check(&self) -> Result<(), String> {
         environment::check(self.rotation.unwrap_or(0.0), self.intensity.unwrap_or(1.0))
     }
 }
 
-/// An experiment.
+/// A reproducible rendering setup.
 #[derive(Clone, Debug)]
 pub struct Experiment {
     /// Name: the file's stem.
@@ -173,35 +173,35 @@ pub struct Experiment {
     pub graph: String,
     /// Built-in name, or a path.
     pub scene: String,
-    /// Camera.
+    /// Camera of the picture.
     pub camera: CameraChoice,
     /// Width and height in pixels.
     pub size: (u32, u32),
-    /// Seconds.
+    /// Animation time [s].
     pub time: f64,
-    /// Radiance of the sky, instead of the scene's.
+    /// Radiance of the sky, replaces the scene's.
     pub sky: Option<(f32, f32, f32)>,
-    /// Changes to the sky's picture.
+    /// Changes to the environment map.
     pub environment: Option<Loc<EnvironmentChange>>,
     /// Changes to the scene's lights, by name.
     pub lights: Vec<(Loc<String>, LightChange)>,
-    /// (name, value as RON, where it stands).
+    /// (name, value as RON), with positions.
     pub params: Vec<(Loc<String>, String)>,
-    /// The file, for messages.
+    /// Sources of positions in messages.
     pub sources: Sources,
 }
 
-/// Largest picture, pixels a side.
+/// Largest side of a picture [pixels].
 pub(crate) const MAX_SIZE: u32 = 16384;
 
-/// Size of a picture when nothing else is said.
+/// Default picture size.
 const DEFAULT_SIZE: (u32, u32) = (1280, 720);
 
-/// Name of the camera when nothing else is said.
+/// Name of the default camera.
 const DEFAULT_CAMERA: &str = "default";
 
 impl Experiment {
-    /// Sets a parameter to a value in RON, over whatever is said of it now.
+    /// Sets a parameter to a RON value, replacing an earlier one.
     pub fn set(&mut self, name: &str, value: &str) {
         let file = self
             .sources
@@ -235,7 +235,7 @@ impl Experiment {
     }
 }
 
-/// Whether pictures of that size can be made.
+/// Checks the size of a picture.
 pub(crate) fn check_size((width, height): (u32, u32)) -> Result<(), String> {
     if width == 0 || height == 0 || width > MAX_SIZE || height > MAX_SIZE {
         return Err(format!(

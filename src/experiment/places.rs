@@ -1,12 +1,12 @@
-//! Places of an experiment's fields in its file, for mistakes that show only when the fields are used.
+//! Positions of an experiment's fields in its file, for errors found when the fields are used.
 
 use super::{Experiment, Field, spans};
 use crate::diagnostics::{At, Diagnostic};
 use std::path::Path;
 
 impl Experiment {
-    /// An error at the line of a field; `None` if the file does not set the field, or something else, such as the command
-    /// line, has changed it.
+    /// An error at the line of a field; `None` if the file does not set the field, or if something
+    /// else, such as the command line, overrides it.
     pub(crate) fn error_in(&self, field: &str, message: impl Into<String>) -> Option<Diagnostic> {
         Some(self.sources.error(self.place_of(field)?, message))
     }

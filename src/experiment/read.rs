@@ -65,7 +65,7 @@ impl Experiment {
         parse(path, sources, file)
     }
 
-    /// Reads an experiment from text, as if it stood in the file `path`.
+    /// Parses an experiment from text, as if it were the file `path`.
     pub fn from_text(path: &Path, text: &str) -> Result<Experiment, Vec<Diagnostic>> {
         let mut sources = Sources::default();
         let file = sources.add(path, text.to_string());
@@ -181,7 +181,7 @@ fn check_light(change: &LightChange) -> Result<(), String> {
     Ok(())
 }
 
-/// The same with its file looked up beside the experiment first.
+/// The same change with its file looked up next to the experiment first.
 pub(super) fn in_folder(folder: &Path, change: EnvironmentChange) -> EnvironmentChange {
     EnvironmentChange {
         file: change.file.map(|file| scene_path(folder, &file)),
@@ -189,7 +189,7 @@ pub(super) fn in_folder(folder: &Path, change: EnvironmentChange) -> Environment
     }
 }
 
-/// Names stay; files are looked up beside the experiment first.
+/// Built-in names are kept; files are looked up next to the experiment first.
 pub(super) fn scene_path(folder: &Path, scene: &str) -> String {
     let beside = folder.join(path_of(scene));
     if scene.contains('.') && beside.is_file() {

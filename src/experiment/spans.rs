@@ -1,4 +1,4 @@
-//! Where the entries of a RON struct or map stand in its text, and edits that leave everything else as it is.
+//! Text positions of entries in a RON struct or map, and edits that keep all other text.
 
 use std::ops::Range;
 
@@ -7,23 +7,23 @@ use std::ops::Range;
 pub(super) struct Entry {
     /// The key without quotes.
     pub key: String,
-    /// From its first byte to behind its comma, where there is one.
+    /// From its first byte to the end of its comma, if any.
     pub whole: Range<usize>,
     pub value: Range<usize>,
     /// Whether a comma follows.
     pub comma: bool,
 }
 
-/// What stands between two brackets.
+/// The text between two brackets.
 #[derive(Clone, Debug)]
 pub(super) struct Body {
-    /// In order.
+    /// Entries in order.
     pub entries: Vec<Entry>,
     /// Offset of the closing bracket.
     pub close: usize,
 }
 
-/// The entries of the first bracket at or after `at`; `None` for text that is not of that form.
+/// The entries of the first bracket at or after `at`; `None` if the text has another form.
 pub(super) fn body(text: &str, at: usize) -> Option<Body> {
     let open = blank(text, at);
     if !text.get(open..)?.starts_with(['(', '{']) {
@@ -78,7 +78,7 @@ fn value(text: &str, mut at: usize) -> Option<usize> {
     }
 }
 
-/// The end of the string, or of the one character, at `at`.
+/// The end of the string or single character at `at`.
 fn token(text: &str, at: usize) -> Option<usize> {
     let rest = text.get(at..)?;
     if let Some(raw) = rest.strip_prefix('r') {
@@ -119,7 +119,7 @@ fn blank(text: &str, mut at: usize) -> usize {
     }
 }
 
-/// Length of the comment at the start of a text; comments of this kind nest.
+/// Length of the nested block comment at the start of a text.
 fn block_comment(text: &str) -> usize {
     let (mut depth, mut at) = (0u32, 0);
     while let Some(found) = text[at..].find(['/', '*']).map(|i| at + i) {
@@ -146,7 +146,7 @@ pub(super) fn apply(text: &str, mut edits: Edits) -> String {
     out
 }
 
-/// Takes an entry out; with its line when nothing else but a comment stands there.
+/// Removes an entry, including its line if only a comment remains there.
 pub(super) fn remove(text: &str, entry: &Entry) -> (Range<usize>, String) {
     let line = text[..entry.whole.start].rfind('\n').map_or(0, |i| i + 1);
     let end = text[entry.whole.end..]
@@ -161,7 +161,7 @@ pub(super) fn remove(text: &str, entry: &Entry) -> (Range<usize>, String) {
     }
 }
 
-/// Puts lines behind the last entry. `keeps_last`: whether the last entry stays.
+/// Inserts lines after the last entry. `keeps_last`: whether the last entry stays.
 pub(super) fn append(
     text: &str,
     body: &Body,

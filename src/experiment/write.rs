@@ -1,4 +1,4 @@
-//! Writing experiments: only what differs from the defaults, and with the comments of a file that is replaced.
+//! Writes experiments: only differences from the defaults, keeping the comments of a replaced file.
 
 use super::ExperimentError;
 use super::adapt::change_to;
@@ -28,7 +28,8 @@ pub fn write(
         return Err(exists(path));
     }
     let params = experiment.params_over(defaults)?;
-    // A scene file is named from this folder, and looked up from it when the text is read back.
+    // Scene files are named relative to this folder and looked up from it when the text is read
+    // back.
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder).map_err(|why| FileError::Write {
         path: path.into(),
@@ -82,7 +83,7 @@ pub fn resolved_text(
             .environment
             .as_ref()
             .and_then(|e| e.value.file.clone());
-        // Its intensity is in the sky's factor.
+        // The intensity is a factor of the sky.
         let value = EnvironmentChange {
             file,
             rotation: Some(environment.rotation),
@@ -93,7 +94,7 @@ pub fn resolved_text(
             at: At::default(),
         }
     });
-    // A change is for all lights of a name: only a name of one light can be written out.
+    // A change affects all lights with its name, so only unique names can be written.
     let single = |name: &str| {
         !name.is_empty() && scene.lights.iter().filter(|l| l.name == name).count() == 1
     };
@@ -127,7 +128,7 @@ fn exists(path: &Path) -> ExperimentError {
     ))
 }
 
-/// What the text must say.
+/// The expected content of a text.
 struct Wanted<'e> {
     experiment: &'e Experiment,
     path: &'e Path,
@@ -135,7 +136,7 @@ struct Wanted<'e> {
     values: &'e Params,
 }
 
-/// Whether a text says the same as an experiment.
+/// Checks that a text reproduces an experiment.
 fn read_back(
     experiment: &Experiment,
     params: &Params,
@@ -203,7 +204,8 @@ pub(super) fn same_scene(a: &str, b: &str) -> bool {
     a == b || real(a).is_some_and(|found| real(b) == Some(found))
 }
 
-/// How a scene is named in the file `path`: files of the project relative to its folder, everything else as it is.
+/// Name of a scene in the file `path`: project files relative to its folder, everything else
+/// unchanged.
 pub(super) fn scene_text(scene: &str, path: &Path) -> String {
     let relative = || {
         let file = Path::new(scene)
@@ -226,8 +228,8 @@ pub(super) fn scene_text(scene: &str, path: &Path) -> String {
     relative().unwrap_or_else(|| scene.to_string())
 }
 
-/// The environment as the file `path` says it: nothing where the experiment says nothing. A file outside the project has
-/// its whole path, so that it is found from everywhere.
+/// The environment in the file `path`; empty if not set. Files outside the project get an absolute
+/// path, so that they are found from everywhere.
 pub(super) fn environment_in(experiment: &Experiment, path: &Path) -> String {
     let Some(Loc { value: change, .. }) = &experiment.environment else {
         return String::new();
@@ -270,7 +272,7 @@ fn environment_text(change: &EnvironmentChange) -> String {
     )
 }
 
-/// The way from a folder to a file, both absolute.
+/// The relative path from a folder to a file, both absolute.
 fn between(folder: &Path, file: &Path) -> PathBuf {
     let common = folder
         .components()
@@ -292,7 +294,7 @@ pub(super) fn vector((x, y, z): (f32, f32, f32)) -> String {
     format!("({x:?}, {y:?}, {z:?})")
 }
 
-/// A written-out camera as RON.
+/// A placed camera as RON.
 pub(crate) fn placed_text(c: &PlacedCamera) -> String {
     let mut out = format!("(eye: {}, target: {}", vector(c.eye), vector(c.target));
     if c.up != super::y_up() {
@@ -343,7 +345,7 @@ impl Wanted<'_> {
 fn fresh(wanted: &Wanted) -> String {
     let mut out = String::from("(\n");
     for field in FIELDS {
-        // Camera and size are always said, so that nobody has to look up what they are.
+        // Camera and size are always written, so that readers need not look up the defaults.
         if !(field.absent)(wanted.experiment) || ["camera", "size"].contains(&field.name) {
             out += &format!(
                 "    {}: {},\n",
@@ -377,8 +379,8 @@ fn map_text(name: &str, entries: &[(String, String)]) -> String {
     format!("{name}: {{\n{}}}", lines.concat())
 }
 
-/// The text of the file at `path`, with the values that differ changed where they stand. `None` when it cannot be
-/// edited: it is no experiment, or written in a way that [`spans`] does not know.
+/// The text of the file at `path` with changed values edited in place. `None` if it is not an
+/// experiment or has a form that [`spans`] does not support.
 fn edited(wanted: &Wanted, defaults: &Params) -> Option<String> {
     let old = Experiment::read(wanted.path).ok()?;
     let text = std::fs::read_to_string(wanted.path).ok()?;
@@ -408,7 +410,7 @@ fn edited(wanted: &Wanted, defaults: &Params) -> Option<String> {
             .iter()
             .any(|(n, change)| n.value == name && light_text(change) == new)
     };
-    // What the author wrote out although it is the default stays, as long as it is true.
+    // Explicit defaults of the author are kept while they remain valid.
     let mut params = wanted.params.clone();
     for (name, text) in &old.params {
         let param = defaults

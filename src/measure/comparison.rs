@@ -1,4 +1,4 @@
-//! Pictures against a reference, part by part and region by region (`docs/metrics.md`).
+//! Comparison of pictures with a reference, by light component and region (`docs/metrics.md`).
 
 mod table;
 mod verdict;
@@ -12,31 +12,31 @@ use crate::metrics::{Compared, Kind, Linear, MetricError, Noise, RELMSE, Scores,
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Version of the schema.
+/// Version of the JSON schema.
 pub const SCHEMA: &str = "conelab-compare-1";
 
-/// Name of the region that is all of the picture.
+/// Name of the region that covers the whole picture.
 pub const FRAME: &str = "frame";
 
-/// A picture by its parts.
+/// A picture split into light components.
 #[derive(Clone, Debug)]
 pub struct Side {
     /// Name of the picture.
     pub name: String,
-    /// Parts of the light; a picture that is not split has only `total`.
+    /// Light components; an unsplit picture has only `total`.
     pub parts: BTreeMap<String, Linear>,
-    /// Noise of each part, where that is known.
+    /// Noise of each component, if known.
     pub noise: BTreeMap<String, Noise>,
 }
 
 impl Side {
-    /// Whether it was made for a display.
+    /// Whether it is display-referred.
     fn displayed(&self) -> bool {
         self.parts.values().any(|p| p.kind == Kind::Displayed)
     }
 }
 
-/// One or two pictures against a reference; what `--json` writes.
+/// One or two pictures compared with a reference; the content of `--json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
     /// [`SCHEMA`].
@@ -44,24 +44,25 @@ pub struct Comparison {
     pub version: String,
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// The pictures: A, and B where there are two.
+    /// Names of the pictures: A, and optionally B.
     pub pictures: Vec<String>,
-    /// What they are compared with.
+    /// Name of the reference.
     pub reference: String,
-    /// Whether the pictures were made for a display: then all numbers are of the displayed range, 0 to 1.
+    /// Whether the pictures are display-referred: all numbers then refer to the displayed range 0
+    /// to 1.
     pub displayed: bool,
-    /// Parts that all of them have.
+    /// Components that all pictures have.
     pub parts: Vec<PartComparison>,
 }
 
-/// A part of the light.
+/// Comparison of a light component.
 #[derive(Clone, Debug, Serialize)]
 pub struct PartComparison {
     /// Name of the part.
     pub part: String,
     /// relMSE between the halves of the reference's samples.
     pub noise: Option<f64>,
-    /// Structure error that the reference's noise alone gives, natural log units.
+    /// Structure error caused by the reference's noise alone [natural log units].
     pub structure_noise: Option<f64>,
     /// First and last exposure of HDR-FLIP, stops.
     pub exposures: [f64; 2],
@@ -70,39 +71,39 @@ pub struct PartComparison {
     pub regions: Vec<RegionComparison>,
 }
 
-/// A region of a part.
+/// Comparison of a region of a component.
 #[derive(Clone, Debug, Serialize)]
 pub struct RegionComparison {
-    /// Its name; [`FRAME`] is all of the picture.
+    /// Name; [`FRAME`] is the whole picture.
     pub region: String,
-    /// Part of the frame, 0 to 1.
+    /// Fraction of the frame, 0 to 1.
     pub share: f64,
-    /// Scores of each picture; nothing where no pixel of the region is a finite number.
+    /// Scores of each picture; `None` if the region has no finite pixel.
     pub scores: Vec<Option<Scores>>,
-    /// Whether each picture's relMSE is below four times the noise: it cannot be told from the reference.
+    /// Whether each picture's relMSE is below four times the noise, so that it is indistinguishable
+    /// from the reference.
     pub within_noise: Vec<bool>,
-    /// The better of two pictures, by metric.
+    /// The better of two pictures by metric.
     pub better: BTreeMap<&'static str, Verdict>,
 }
 
-/// Takes the maps of a picture (0 is A) and part.
+/// Receives the maps of a picture (0 is A) and component.
 pub type TakeMaps<'a> = dyn FnMut(usize, &str, Vec<MapFile>) -> Result<(), MetricError> + 'a;
 
 /// The options of a comparison.
 pub struct Request<'a> {
-    /// Parts; all that are there when empty.
+    /// Components to compare; empty means all.
     pub parts: &'a [String],
-    /// Regions besides those that follow from the reference.
+    /// Regions in addition to those derived from the reference.
     pub masks: &'a [Region],
-    /// Where maps go; none are made without.
+    /// Receiver of maps; `None` computes none.
     pub maps: Option<&'a mut TakeMaps<'a>>,
 }
 
 /// Compares one or two pictures with a reference.
 ///
 /// # Errors
-/// Pictures for a display beside radiance, no common part, a part that is not there, different sizes, masks of another
-/// size, or what becomes of the maps.
+/// Display-referred pictures mixed with radiance; missing components; different sizes.
 pub fn compare(
     pictures: &[Side],
     reference: &Side,
@@ -171,7 +172,7 @@ pub fn compare(
     })
 }
 
-/// The parts to compare: the total, then by kind and name.
+/// The components to compare: the total, then by kind and name.
 fn part_names(
     pictures: &[Side],
     reference: &Side,

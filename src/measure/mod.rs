@@ -1,4 +1,5 @@
-//! One experiment, measured: times of its passes, memory, failed checks, and how far its light is from a reference.
+//! Measurement of one experiment: pass times, memory, failed checks, and errors against a
+//! reference.
 
 pub(crate) mod comparison;
 pub mod oracle;
@@ -22,22 +23,22 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Frames of a measurement: warm-up and measured ones.
+/// Numbers of warm-up and measured frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Frames {
-    /// Frames that run first, at least ([`WarmUp`]): caches fill and clocks rise. More run if the picture has not
-    /// converged by the last frame measured.
+    /// Minimum number of warm-up frames ([`WarmUp`]): they fill caches and raise clocks. More run
+    /// if the picture has not converged by the last measured frame.
     pub warmup: usize,
-    /// Frames measured, at least 1.
+    /// Measured frames, at least 1.
     pub count: usize,
 }
 
-/// Which scores a point has.
+/// Scores to compute.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scored<'a> {
-    /// Those of every part of the light by every metric.
+    /// All components by all metrics.
     All,
-    /// That of one part by one metric: FLIP of all parts takes longer than many frames.
+    /// One component by one metric; FLIP of all components takes longer than many frames.
     One(&'a str, &'static Metric),
 }
 
@@ -52,19 +53,20 @@ impl Scored<'_> {
 pub struct Point {
     /// Times, memory, settings, device, failed checks.
     pub stats: Stats,
-    /// Distance of each part of the light from the reference; empty without one.
+    /// Errors of each light component; empty without a reference.
     pub scores: BTreeMap<String, Scores>,
-    /// relMSE between the two halves of the reference's samples, by part: what the scores cannot tell apart.
+    /// relMSE between the two halves of the reference's samples, by component; smaller scores are
+    /// not significant.
     pub noise: BTreeMap<String, f64>,
-    /// Structure error that the reference's noise alone gives, by part, natural log units.
+    /// Structure error caused by the reference's noise alone, by component [natural log units].
     #[serde(default)]
     pub structure_noise: BTreeMap<String, f64>,
-    /// Samples a pixel of each reference, by its number of bounces.
+    /// Samples per pixel of each reference, by its number of bounces.
     pub references: BTreeMap<u32, u64>,
 }
 
 impl Point {
-    /// Noise of a part's reference; 0 where it is not known.
+    /// Noise of a component's reference; 0 if unknown.
     pub(crate) fn noise_of(&self, part: &str) -> Noise {
         let of = |list: &BTreeMap<String, f64>| list.get(part).copied().unwrap_or(0.0);
         Noise {
@@ -74,13 +76,13 @@ impl Point {
     }
 }
 
-/// A point with small pictures, JPEG.
+/// A point with JPEG thumbnails.
 pub struct Measured {
-    /// The numbers.
+    /// Costs and scores.
     pub point: Point,
     /// The displayed picture, if the graph has an `output`.
     pub picture: Option<Vec<u8>>,
-    /// Map of the error against the reference, if there is one.
+    /// Error map against the reference, if there is one.
     pub error_map: Option<Vec<u8>>,
     /// The first reference, displayed with the default tone map.
     pub reference: Option<Vec<u8>>,
@@ -186,7 +188,7 @@ pub fn measure(
                 format!("{part}, {bounces} bounces")
             };
             point.scores.insert(name.clone(), scores);
-            // Of black references there is none, and JSON has no number for that.
+            // The noise of black references is undefined, and JSON has no NaN.
             if expected.noise.structure.is_finite() {
                 point
                     .structure_noise
@@ -210,16 +212,16 @@ pub fn measure(
 
 /// An experiment that has run.
 pub struct Timed {
-    /// After its last frame.
+    /// The session after its last frame.
     pub session: Session,
     /// Times of the measured frames.
     pub times: Vec<FrameTimes>,
-    /// Frames that ran before them.
+    /// Warm-up frames.
     pub warmup: usize,
 }
 
-/// Runs an experiment and keeps the times of its last frames; only what the picture needs, and these `extra`
-/// textures, is computed.
+/// Runs an experiment and keeps the times of its last frames. Computes only the picture and the
+/// textures `extra`.
 pub fn timed(
     lab: &Lab,
     loaded: &Loaded,
@@ -241,7 +243,7 @@ pub fn timed(
         times.extend(session.frame(0.0)?);
     }
     times.extend(session.finish()?);
-    // The first of them come from the warm-up: frames are in flight.
+    // Frames are in flight, so the first times belong to the warm-up.
     let times = times.split_off(times.len().saturating_sub(frames.count));
     Ok(Timed {
         session,
@@ -250,7 +252,7 @@ pub fn timed(
     })
 }
 
-/// Parts of an experiment's light, by the graph's names for them, from frames that make nothing else.
+/// Light components of an experiment by graph name, from frames that compute nothing else.
 fn parts_alone(
     lab: &Lab,
     warm: &mut Warm,
@@ -260,7 +262,8 @@ fn parts_alone(
     frames: Frames,
     wanted: Vec<String>,
 ) -> Result<BTreeMap<String, Linear>, LabError> {
-    // The timed session's scene is on the device already: another upload of it would cost memory.
+    // Reuses the uploaded scene of the timed session, because a second upload would double the
+    // memory.
     let reuse = warm
         .scored
         .as_ref()

@@ -1,4 +1,4 @@
-//! Small pictures of a point, for people.
+//! Thumbnails of a point.
 
 use crate::lab::{LabError, Texels};
 use crate::metrics::colour::display;
@@ -8,18 +8,19 @@ use image::codecs::jpeg::JpegEncoder;
 use image::imageops::{FilterType, resize};
 use image::{ImageBuffer, Rgb, RgbImage};
 
-/// Longest side, pixels: 200 points with two pictures each stay below 4 MB.
+/// Longest side [pixels]: 200 points with two pictures each stay below 4 MB.
 const SIDE: u32 = 256;
 /// JPEG quality, percent.
 const QUALITY: u8 = 82;
 
-/// A display-encoded picture.
+/// JPEG of a display-encoded picture.
 pub(super) fn thumbnail(texels: &Texels) -> Result<Vec<u8>, LabError> {
     let [width, height, _] = texels.extent;
     small_jpeg(RgbImage::from_raw(width, height, rgb8(texels)))
 }
 
-/// Radiance as graphs display it by default, for the reference beside their pictures. What is no number is black.
+/// Radiance with the default display transform of graphs, to compare the reference with their
+/// pictures. NaN is black.
 pub(super) fn displayed(light: &Linear) -> Result<Vec<u8>, LabError> {
     let byte =
         |v: f32| (display(Kind::Radiance, if v.is_finite() { v } else { 0.0 }) * 255.0 + 0.5) as u8;
@@ -30,8 +31,8 @@ pub(super) fn displayed(light: &Linear) -> Result<Vec<u8>, LabError> {
     ))
 }
 
-/// The root of each pixel's relative squared error, |x - r| / sqrt(r^2 + 0.01), mean over channels: black at 0, through
-/// red and yellow to white at 1 and above.
+/// The square root of each pixel's relative squared error, |x - r| / sqrt(r^2 + 0.01), mean over
+/// channels: black at 0, through red and yellow to white at 1 and above.
 pub(super) fn error_map(test: &Linear, reference: &Linear) -> Result<Vec<u8>, LabError> {
     let heat = test.rgb.iter().zip(&reference.rgb).flat_map(|(x, r)| {
         let squares = x

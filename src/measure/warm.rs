@@ -1,4 +1,4 @@
-//! What one measurement leaves to the next.
+//! State that is reused from one measurement to the next.
 
 use super::reference::{GRAPH, Gathered, Goal, Reference, Tracer, find, gather};
 use crate::experiment::Experiment;
@@ -8,11 +8,11 @@ use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Most bytes of references in memory: eight of 1920x1080. What is thrown away is read again.
+/// Memory limit of cached references [bytes]: eight of 1920x1080. Evicted ones are read again.
 const MAX_REFERENCES: usize = 1 << 30;
 
-/// What one measurement leaves to the next: compiled graphs, references, pipelines, the scene on the device. No content
-/// of textures: a point's result does not depend on the points before it.
+/// State that is reused from one measurement to the next: compiled graphs, references, pipelines,
+/// the uploaded scene. Texture contents are not reused, so results do not depend on earlier points.
 #[derive(Default)]
 pub struct Warm {
     loaded: HashMap<String, Loaded>,
@@ -20,17 +20,18 @@ pub struct Warm {
     tracer: Tracer,
     pub(super) timed: Option<ReusableParts>,
     pub(super) scored: Option<(Arc<Scene>, ReusableParts)>,
-    /// What the last session of a name has left, for the next of that name.
+    /// Reusable parts of the last session, by session name.
     pub sessions: HashMap<String, ReusableParts>,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted {
     pub bounces: u32,
-    /// Samples a pixel that are gathered; what is on the disk is used as it is when absent.
+    /// Samples per pixel to gather; `None` uses only references on disk.
     pub samples: Option<u64>,
-    /// Of a frame in a sequence: its seed, the same for all, so that what noise frames have goes out of their differences.
-    /// It has the means of both halves of the samples, and is gathered on what the one before it left.
+    /// Seed of a frame in a sequence. All frames share it, so that their noise cancels in
+    /// differences. The reference then has the means of both sample halves, and reuses the tracer
+    /// of the previous frame.
     pub seed: Option<u32>,
 }
 
@@ -46,22 +47,20 @@ impl Warm {
             .ok_or_else(|| LabError::Request(format!("graph '{name}' is gone")))
     }
 
-    /// Takes a graph that was compiled elsewhere.
+    /// Adds a graph that was compiled elsewhere.
     pub fn keep(&mut self, name: &str, graph: &Loaded) {
         self.loaded.insert(name.to_string(), graph.clone());
     }
 
-    /// Checks an experiment's graph and parameters; its scene is not opened.
+    /// Checks an experiment's graph and parameters without opening its scene.
     pub fn check(&mut self, home: &Workspace, experiment: &Experiment) -> Result<(), LabError> {
         experiment.params_over(&self.graph(home, &experiment.graph)?.graph.params)?;
         Ok(())
     }
 
-    /// The reference of an experiment: from memory, from the disk, or gathered now; nothing where there is none and none
-    /// is to be gathered. `subject` names what is looked at: scene, light, camera, size, time.
-    ///
-    /// # Errors
-    /// Everything that can be wrong with the experiment; a file that cannot be read or written.
+    /// The reference of an experiment: from memory, from disk, or gathered now; `None` if it does
+    /// not exist and must not be gathered. `subject` identifies the scene, light, camera, size and
+    /// time.
     pub fn reference(
         &mut self,
         lab: &Lab,
@@ -70,7 +69,7 @@ impl Warm {
         wanted: Wanted,
         on_progress: &mut dyn FnMut(Gathered),
     ) -> Result<Option<Arc<Reference>>, LabError> {
-        // Of the parameters it depends on those that its graph has too.
+        // Only parameters that the reference graph shares affect the reference.
         let shared = self.graph(&lab.home, GRAPH)?.graph.params.clone();
         let params =
             experiment.params_over(&self.graph(&lab.home, &experiment.graph)?.graph.params)?;
@@ -110,7 +109,7 @@ impl Warm {
         Ok(reference)
     }
 
-    /// Lets go of everything on a device that was lost.
+    /// Drops all state on a lost device.
     pub(crate) fn leave_device(&mut self) {
         let (loaded, references) = (
             std::mem::take(&mut self.loaded),

@@ -1,25 +1,27 @@
-//! How long a device works before it is measured.
+//! Warm-up before a measurement.
 
 use crate::vulkan::DeviceInfo;
 
-/// A GPU that was idle while the CPU worked has fallen to a low clock, and takes tens of milliseconds of work to leave it.
+/// GPU work that raises the clock: an idle GPU drops to a low clock and needs tens of milliseconds
+/// of work to leave it.
 const LEAST_GPU_MS: f64 = 100.0;
 
-/// Frames after which that is given up.
+/// Limit of the warm-up [frames].
 const MOST_FRAMES: usize = 10_000;
 
-/// When a device is warm.
+/// Warm-up criterion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WarmUp {
-    /// Frames, at least.
+    /// Minimum number of frames.
     pub(crate) frames: usize,
-    /// GPU time of all of them, at least.
+    /// Minimum GPU time of all warm-up frames [ms].
     pub gpu_ms: f64,
 }
 
 impl WarmUp {
-    /// So many frames. On a GPU also until it has worked for 100 ms; not on software devices, which have no clock of
-    /// their own and take longer for a frame, nor where times are not known.
+    /// At least `frames` frames, and on a GPU at least 100 ms of work. Software devices have no
+    /// clock of their own and slower frames, so their time is not considered, nor are unknown
+    /// times.
     pub fn of(device: &DeviceInfo, frames: usize) -> WarmUp {
         let clocks = device.kind != "cpu" && device.timestamp_ns > 0.0;
         WarmUp {
@@ -28,8 +30,8 @@ impl WarmUp {
         }
     }
 
-    /// Runs frames until the device is warm, and says how many. `frame` runs one and gives the GPU time, ms, of what
-    /// has finished meanwhile.
+    /// Runs frames until the device is warm and returns their number. `frame` runs one frame and
+    /// returns the GPU time [ms] of the frames finished since.
     pub fn run<E>(self, frame: &mut dyn FnMut() -> Result<f64, E>) -> Result<usize, E> {
         let (mut frames, mut gpu_ms) = (0, 0.0);
         while frames < self.frames || (gpu_ms < self.gpu_ms && frames < MOST_FRAMES) {

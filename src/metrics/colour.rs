@@ -1,4 +1,4 @@
-//! The colour spaces that FLIP works in; RGB is linear with the primaries of sRGB, white is D65.
+//! Colour spaces of FLIP. RGB is linear with the sRGB primaries; white is D65.
 
 use super::Kind;
 
@@ -7,7 +7,7 @@ pub fn luminance(rgb: [f32; 3]) -> f64 {
     0.2126 * f64::from(rgb[0]) + 0.7152 * f64::from(rgb[1]) + 0.0722 * f64::from(rgb[2])
 }
 
-/// Linear value of an sRGB-encoded one, both 0 to 1 (IEC 61966-2-1).
+/// Decodes an sRGB value in 0..1 (IEC 61966-2-1).
 pub fn srgb_to_linear(v: f32) -> f32 {
     if v <= 0.04045 {
         v / 12.92
@@ -16,8 +16,8 @@ pub fn srgb_to_linear(v: f32) -> f32 {
     }
 }
 
-/// A channel as it is displayed, 0 to 1: c / (1 + c) for radiance, as it is for what is 0 to 1 ([`Kind`]); then encoded
-/// as sRGB (IEC 61966-2-1). Not rounded.
+/// The displayed value of a channel, 0 to 1: radiance is mapped by c / (1 + c), values in 0..1 are
+/// kept ([`Kind`]). The result is sRGB-encoded (IEC 61966-2-1) and not rounded.
 pub fn display(kind: Kind, c: f32) -> f64 {
     let c = f64::from(c.max(0.0));
     let shown = if matches!(kind, Kind::Direct | Kind::Radiance) {
@@ -32,7 +32,7 @@ pub fn display(kind: Kind, c: f32) -> f64 {
     }
 }
 
-/// XYZ of the white point divided by itself is 1: all spaces here are relative to it.
+/// The white point's XYZ is normalised to 1: all spaces here are relative to it.
 const TO_XYZ: [[f32; 3]; 3] = [
     [0.412_386_56, 0.357_591_5, 0.180_450_49],
     [0.212_636_82, 0.715_183, 0.072_180_2],
@@ -51,13 +51,14 @@ fn times(m: &[[f32; 3]; 3], v: [f32; 3]) -> [f32; 3] {
     m.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
 }
 
-/// XYZ, each divided by that of the white point.
+/// XYZ relative to the white point.
 fn relative_xyz(rgb: [f32; 3]) -> [f32; 3] {
     let [x, y, z] = times(&TO_XYZ, rgb);
     [x / WHITE[0], y / WHITE[1], z / WHITE[2]]
 }
 
-/// The linearised L\*a\*b\* in which FLIP filters: luminance, red-green, blue-yellow (Andersson et al. 2020, section 4.1).
+/// The linearised L\*a\*b\* in which FLIP filters: luminance, red-green, blue-yellow (Andersson et
+/// al. 2020, section 4.1).
 pub(crate) fn ycxcz(rgb: [f32; 3]) -> [f32; 3] {
     let [x, y, z] = relative_xyz(rgb);
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]

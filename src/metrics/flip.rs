@@ -14,7 +14,7 @@ pub const PIXELS_PER_DEGREE: f64 = 3840.0 * PI / 180.0;
 
 /// Exponent that compresses colour differences.
 const COLOUR_EXPONENT: f32 = 0.7;
-/// Part of the largest colour difference that is mapped to errors below [`COLOUR_KNEE_ERROR`].
+/// Fraction of the largest colour difference that is mapped to errors below [`COLOUR_KNEE_ERROR`].
 const COLOUR_KNEE: f32 = 0.4;
 /// Error at the knee.
 const COLOUR_KNEE_ERROR: f32 = 0.95;
@@ -23,21 +23,22 @@ const FEATURE_EXPONENT: f32 = 0.5;
 /// Width of the edge and point detectors, degrees.
 const FEATURE_WIDTH: f64 = 0.082;
 
-/// What an observer perceives of a picture.
+/// A picture as perceived by an observer.
 struct Perceived {
-    /// Filtered by the contrast sensitivity of the eye, as L\*a\*b\* with the Hunt effect.
+    /// Filtered by the eye's contrast sensitivity, as L\*a\*b\* with the Hunt effect.
     colour: Vec<[f32; 3]>,
     /// Strength of edges and of points.
     features: Vec<[f32; 2]>,
 }
 
-/// One number a pixel.
+/// A picture with one channel.
 struct Plane {
     width: usize,
     values: Vec<f32>,
 }
 
-/// FLIP of every pixel, 0 to 1, of two pictures of `width` pixels a row in linear RGB, 0 to 1.
+/// FLIP of every pixel, 0 to 1, for two pictures in linear RGB (0 to 1) with `width` pixels per
+/// row.
 pub fn flip(test: &[[f32; 3]], reference: &[[f32; 3]], width: usize) -> Vec<f32> {
     let (test, reference) = (perceive(test, width), perceive(reference, width));
     let extreme = colour_distance(hunt_lab([0.0, 1.0, 0.0]), hunt_lab([0.0, 0.0, 1.0]));
@@ -58,7 +59,8 @@ fn colour_distance(a: [f32; 3], b: [f32; 3]) -> f32 {
     ((a[0] - b[0]).abs() + chroma).powf(COLOUR_EXPONENT)
 }
 
-/// Compressed distance to error: two straight lines, so that large distances do not swallow the range.
+/// Maps the compressed distance to an error by two line segments, so that large distances do not
+/// use up the range.
 fn colour_error(distance: f32, extreme: f32) -> f32 {
     let knee = COLOUR_KNEE * extreme;
     if distance < knee {
@@ -74,7 +76,7 @@ fn perceive(rgb: &[[f32; 3]], width: usize) -> Perceived {
         values: opponent.par_iter().map(|c| c[i]).collect(),
     };
     let luminance = channel(0);
-    // One minus what light does: the detectors see luminance from 0 to 1.
+    // Linear luminance in 0..1 for the detectors.
     let grey = Plane {
         width,
         values: luminance
@@ -89,7 +91,8 @@ fn perceive(rgb: &[[f32; 3]], width: usize) -> Perceived {
     }
 }
 
-/// The eye's contrast sensitivity: one Gaussian for luminance and red-green, a sum of two for blue-yellow.
+/// Contrast sensitivity of the eye: one Gaussian for luminance and red-green, a sum of two for
+/// blue-yellow.
 fn filtered_colour(luminance: &Plane, red_green: &Plane, blue_yellow: &Plane) -> Vec<[f32; 3]> {
     const WIDEST: f64 = 0.04;
     let radius = (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE).ceil() as i32;
@@ -108,7 +111,8 @@ fn filtered_colour(luminance: &Plane, red_green: &Plane, blue_yellow: &Plane) ->
         plane.rows(&weights).columns(&weights)
     };
     let (y, cx) = (single(luminance, 0.0047), single(red_green, 0.0053));
-    // a sqrt(pi / b) is split evenly between both directions; together the two sums weigh 1.
+    // a sqrt(pi / b) is split evenly between both directions; the two sums have a total weight of
+    // 1.
     let part = |a: f64, b: f64| gaussian((a * (PI / b).sqrt()).sqrt(), b);
     let (wide, narrow) = (part(34.1, 0.04), part(13.5, 0.025));
     let sum = (wide.iter().sum::<f64>().powi(2) + narrow.iter().sum::<f64>().powi(2)).sqrt();
@@ -164,7 +168,7 @@ fn features(grey: &Plane) -> Vec<[f32; 2]> {
 }
 
 impl Plane {
-    /// Convolved along rows; the border's pixels go on beyond it.
+    /// Convolves along rows; border pixels are replicated.
     fn rows(&self, weights: &[f32]) -> Plane {
         let radius = weights.len() / 2;
         let mut values = vec![0.0; self.values.len()];
@@ -188,7 +192,7 @@ impl Plane {
         }
     }
 
-    /// Convolved along columns, in the same way.
+    /// Convolves along columns; border pixels are replicated.
     fn columns(&self, weights: &[f32]) -> Plane {
         let radius = weights.len() / 2;
         let height = self.values.len() / self.width;

@@ -15,21 +15,21 @@ const ACES: [f64; 5] = [
     0.14,
 ];
 
-/// Displayed luminance to which the brightest and the median pixel are brought.
+/// Displayed luminance of the brightest and the median pixel.
 const TARGET: f64 = 0.85;
 
-/// The exposures that are looked at, evenly spaced.
+/// Evenly spaced exposures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exposures {
-    /// Stops at which the brightest pixel of the reference is shown at 0.85.
+    /// Exposure at which the brightest pixel of the reference is shown at 0.85 [stops].
     pub start: f64,
-    /// Stops at which its median pixel is.
+    /// Exposure at which its median pixel is shown at 0.85 [stops].
     pub stop: f64,
-    /// How many: one a stop and at least 2, or 1 where there is no range.
+    /// Number of exposures: one per stop and at least 2, or 1 without a range.
     pub count: u32,
 }
 
-/// The exposures of a reference. Medians below 1.2e-7 count as that; a reference without light is looked at unexposed.
+/// The exposures for a reference. Medians are at least 1.2e-7; a black reference has exposure 0.
 pub fn exposures(reference: &[[f32; 3]]) -> Exposures {
     let mut values: Vec<f64> = reference.iter().map(|c| luminance(*c)).collect();
     let brightest = values.iter().copied().fold(0.0, f64::max);
@@ -61,7 +61,8 @@ pub fn exposures(reference: &[[f32; 3]]) -> Exposures {
     Exposures { start, stop, count }
 }
 
-/// HDR-FLIP of every pixel, 0 to 1: the largest FLIP over the exposures. Costs a FLIP for each of them.
+/// HDR-FLIP of every pixel, 0 to 1: the largest FLIP over the exposures. Costs one FLIP per
+/// exposure.
 pub fn hdr_flip(
     test: &[[f32; 3]],
     reference: &[[f32; 3]],

@@ -1,4 +1,4 @@
-//! Maps of the error, as pictures for the eye and as numbers.
+//! Error maps, as false-colour pictures and as numbers.
 
 use super::colour::luminance;
 use super::means::relative_square;
@@ -8,17 +8,18 @@ use exr::prelude::{
 };
 use std::io::Cursor;
 
-/// Decades of the relative squared error that the map shows, from its darkest to its brightest colour.
+/// Decades of relative squared error from the darkest to the brightest colour.
 const DECADES: (f64, f64) = (-4.0, 2.0);
-/// Structure error of the brightest colour, natural log units: two of a block's four neighbours differ by a factor of 3.
+/// Structure error of the brightest colour [natural log units]: two of a block's four neighbours
+/// differ by a factor of 3.
 const STRUCTURE: f64 = 0.5;
 
 /// One map as a file.
 pub struct MapFile {
-    /// End of the file's name, for example `flip.png`.
+    /// Suffix of the file's name, for example `flip.png`.
     pub name: &'static str,
     pub bytes: Vec<u8>,
-    /// What its colours or channels mean.
+    /// Meaning of its colours or channels.
     pub scale: String,
 }
 
@@ -43,7 +44,7 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
         .map(|(x, r)| (luminance(*x) - luminance(*r)) as f32)
         .collect();
     let structure = compared.structure().map();
-    // What is dark is a known part of the mean.
+    // The share of dark pixels in the mean is known.
     let full = (compared.dark / super::DARK).max(f64::MIN_POSITIVE);
     let size = compared.test.size;
     let logarithmic = |v: &f32| (f64::from(*v).log10() - DECADES.0) / (DECADES.1 - DECADES.0);
@@ -93,7 +94,7 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
 /// The colours of NVIDIA's maps (matplotlib's magma), sRGB, from 0 to 1 in 256 steps.
 const MAGMA: &[u8; 768] = include_bytes!("magma.rgb");
 
-/// The colour of a value, 0 to 1; numbers that are none are as bright as can be.
+/// The colour of a value in 0..1; NaN gets the brightest colour.
 pub fn magma(value: f64) -> [u8; 3] {
     let value = if value.is_nan() {
         1.0
@@ -104,7 +105,7 @@ pub fn magma(value: f64) -> [u8; 3] {
     [MAGMA[i], MAGMA[i + 1], MAGMA[i + 2]]
 }
 
-/// Blue at -1 over white at 0 to red at 1; black where there is no number.
+/// Blue at -1 over white at 0 to red at 1; black for NaN.
 fn diverging(value: f64) -> [u8; 3] {
     if value.is_nan() {
         return [0; 3];

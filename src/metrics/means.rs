@@ -1,17 +1,18 @@
-//! How each metric is computed from two pictures. Sums go row by row, and then in order: the same bits whatever the number
-//! of threads.
+//! Computation of each metric from two pictures. Sums run over rows, then over row sums in order,
+//! so that the bits do not depend on the number of threads.
 
 use super::colour::luminance;
 use super::{Compared, is_finite};
 use rayon::prelude::*;
 
-/// Keeps relative errors of dark pixels finite: squared radiance in relMSE, radiance in SMAPE.
+/// Offset that keeps relative errors of dark pixels finite: squared radiance in relMSE, radiance in
+/// SMAPE.
 const EPSILON: f64 = 1e-2;
 
-/// Which pixels count; all of them without one.
+/// Selects pixels; all of them if `None`.
 pub(super) type Mask<'m> = Option<&'m [bool]>;
 
-/// Squared distance of two values of a channel, relative to the reference's square.
+/// Squared difference of a channel, relative to the squared reference.
 pub(super) fn relative_square(x: f32, y: f32, r: f32) -> f64 {
     let (x, y, r) = (f64::from(x), f64::from(y), f64::from(r));
     (x - y) * (x - y) / (r * r + EPSILON)
@@ -83,7 +84,7 @@ fn is_lost(c: &Compared, x: [f32; 3], r: [f32; 3]) -> bool {
     is_dark(c, x) && !is_dark(c, r)
 }
 
-/// Sums over the pixels of a mask; `add` is given the number of each.
+/// Sums over the pixels of a mask; `add` receives the pixel index.
 pub(super) fn sums<const N: usize>(
     c: &Compared,
     mask: Mask,
@@ -103,7 +104,7 @@ pub(super) fn sums<const N: usize>(
     })
 }
 
-/// Sums over the pixels of a mask that are finite in both pictures; `add` is given their values in both.
+/// Sums over the pixels of a mask that are finite in both pictures; `add` receives both values.
 fn over_finite<const N: usize>(
     c: &Compared,
     mask: Mask,
@@ -135,7 +136,7 @@ fn over_map(c: &Compared, mask: Mask, map: &[f32]) -> f64 {
     sum / count
 }
 
-/// Mean over the channels of the pixels that `light` picks, of what it picks; 0 where it picks none.
+/// Mean of `light` over the pixels for which it returns a value; 0 without any.
 fn light_where(
     c: &Compared,
     mask: Mask,
@@ -150,7 +151,7 @@ fn light_where(
     sum / (3.0 * count.max(1.0))
 }
 
-/// Part of the pixels, 0 to 1.
+/// Fraction of pixels that satisfy `is`, 0 to 1.
 fn share_where(c: &Compared, mask: Mask, is: impl Fn([f32; 3], [f32; 3]) -> bool + Sync) -> f64 {
     let [sum, count] = over_finite(c, mask, |x, r, [sum, count]| {
         *sum += f64::from(u8::from(is(x, r)));

@@ -1,4 +1,5 @@
-//! How far a picture is from a reference: numbers and maps, on linear radiance. `docs/metrics.md` has every definition.
+//! Errors of a picture against a reference: numbers and maps, on linear radiance. Definitions are
+//! in `docs/metrics.md`.
 
 pub mod colour;
 pub(crate) mod flip;
@@ -18,13 +19,13 @@ use serde::Deserialize;
 use std::sync::OnceLock;
 use structure::Structure;
 
-/// Most pixels of a picture that is compared (8192 x 8192); FLIP takes about 120 bytes for each.
+/// Maximum number of pixels (8192 x 8192); FLIP uses about 120 bytes per pixel.
 pub(crate) const MAX_PIXELS: u64 = 1 << 26;
 
-/// A pixel is dark where its luminance is at most this part of the reference's mean luminance.
+/// Pixels up to this fraction of the reference's mean luminance are dark.
 pub(crate) const DARK: f64 = 0.01;
 
-/// Why pictures cannot be compared.
+/// Reason why pictures cannot be compared.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct MetricError(pub String);
@@ -34,9 +35,9 @@ pub struct MetricError(pub String);
 pub struct Linear {
     /// Width and height, pixels.
     pub size: (u32, u32),
-    /// Radiance, or whatever a part holds; rows from the top, `width * height` texels.
+    /// Radiance or another part, row by row from the top; `width * height` texels.
     pub rgb: Vec<[f32; 3]>,
-    /// What its numbers are.
+    /// Meaning of the values.
     pub kind: Kind,
 }
 
@@ -69,7 +70,7 @@ pub fn relmse(test: &Linear, reference: &Linear) -> Result<f64, MetricError> {
     relative_distance(test, reference, reference)
 }
 
-/// mean (x - y)^2 / (r^2 + 0.01): how far x is from y in the measure of relMSE.
+/// mean (x - y)^2 / (r^2 + 0.01): the distance of x from y, normalised as in relMSE.
 pub(crate) fn relative_distance(
     x: &Linear,
     y: &Linear,
@@ -89,24 +90,24 @@ pub(crate) fn relative_distance(
     Ok(sum / (3 * x.rgb.len()) as f64)
 }
 
-/// What a picture's numbers are, in the order in which parts of the light are listed. It says how FLIP shows them to its
-/// observer, and which regions follow from them.
+/// Meaning of a picture's values, in the display order of light components. It decides how FLIP
+/// displays them and which regions are derived from them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// Radiance that comes straight from lights.
+    /// Radiance received directly from lights.
     Direct,
-    /// Radiance of any range: shown by c / (1 + c), which is how the program shows pictures by default.
+    /// Radiance of any range, displayed by c / (1 + c), the program's default.
     #[default]
     Radiance,
-    /// The part of what is above a surface that is open, 0 to 1, shown as it is.
+    /// Unoccluded fraction of the hemisphere, 0 to 1, displayed unchanged.
     Openness,
-    /// 0 to 1, shown as it is: pictures that were made for a display.
+    /// Display-referred values in 0..1, displayed unchanged.
     Displayed,
 }
 
 impl Kind {
-    /// How a value of 0 or more is shown, 0 to 1.
+    /// The displayed linear value of a non-negative value, 0 to 1.
     pub fn shown(self, v: f32) -> f32 {
         match self {
             Kind::Direct | Kind::Radiance => v / (1.0 + v),
@@ -125,7 +126,7 @@ pub fn scores(test: &Linear, reference: &Linear) -> Result<Scores, MetricError> 
     compared.scores(None).ok_or_else(no_number)
 }
 
-/// What is no difference, in multiples of the reference's noise.
+/// Significance threshold for differences, in multiples of the reference's noise.
 pub(crate) const NOISE_FACTOR: f64 = 4.0;
 
 /// Whether a relMSE, or a difference of two, is below four times the noise.
@@ -133,7 +134,7 @@ pub(crate) fn within_noise(relmse: f64, noise: Option<f64>) -> bool {
     noise.is_some_and(|n| relmse.abs() < NOISE_FACTOR * n)
 }
 
-/// A picture against a reference. Maps that cost time are made when they are first asked for, and kept.
+/// A picture and its reference. Expensive maps are computed on first use and cached.
 pub struct Compared<'a> {
     test: &'a Linear,
     reference: &'a Linear,
@@ -163,13 +164,13 @@ impl<'a> Compared<'a> {
         })
     }
 
-    /// The scores over the pixels of a mask, or over all of them; nothing where none of them is a number in both.
-    /// What is dark does not depend on the mask.
+    /// The scores over the pixels of a mask, or over all of them; `None` if no pixel is finite in
+    /// both. The threshold of dark pixels does not depend on the mask.
     pub fn scores(&self, mask: Option<&[bool]>) -> Option<Scores> {
         Scores::new(self, mask, &|_| true)
     }
 
-    /// The scores over all pixels by one metric alone, without the time that others take.
+    /// The scores of one metric over all pixels, without the cost of the others.
     pub(crate) fn scores_by(&self, metric: &Metric) -> Option<Scores> {
         Scores::new(self, None, &|m| m == metric)
     }
@@ -186,7 +187,7 @@ impl<'a> Compared<'a> {
         }
     }
 
-    /// FLIP of every pixel, 0 to 1. Takes most of a second for a megapixel on one core.
+    /// FLIP of every pixel, 0 to 1. Takes almost 1 s per megapixel on one core.
     pub fn flip(&self) -> &[f32] {
         self.flip.get_or_init(|| {
             let show = |picture: &Linear| -> Vec<[f32; 3]> {
@@ -203,12 +204,12 @@ impl<'a> Compared<'a> {
         })
     }
 
-    /// HDR-FLIP of every pixel, 0 to 1. Takes as long as FLIP for each exposure.
+    /// HDR-FLIP of every pixel, 0 to 1. Costs one FLIP per exposure.
     pub fn hdr_flip(&self) -> &[f32] {
         &self.exposed().1
     }
 
-    /// What HDR-FLIP looks at.
+    /// The exposures of HDR-FLIP.
     pub fn exposures(&self) -> Exposures {
         self.exposed().0
     }
@@ -237,7 +238,8 @@ impl<'a> Compared<'a> {
         is_finite(self.test.rgb[i], self.reference.rgb[i])
     }
 
-    /// As FLIP sees it: one wrong pixel would reach all that its filters see around it; light is never negative to an eye.
+    /// The input of FLIP: non-finite pixels are replaced, because its filters would spread them,
+    /// and negative values are clamped.
     fn visible(&self, picture: &Linear) -> Vec<[f32; 3]> {
         let pixels = picture.rgb.iter().enumerate();
         pixels
@@ -251,7 +253,7 @@ impl<'a> Compared<'a> {
             .collect()
     }
 
-    /// A map in which wrong pixels count as 1.
+    /// A map in which non-finite pixels count as 1.
     fn marked(&self, mut map: Vec<f32>) -> Vec<f32> {
         map.iter_mut()
             .enumerate()
@@ -265,7 +267,8 @@ fn no_number() -> MetricError {
     MetricError("no pixel is a finite number in both pictures".into())
 }
 
-/// Luminance up to which a pixel is dark: [`DARK`] of the mean over the reference's pixels that are finite in both.
+/// Threshold of dark pixels: [`DARK`] times the mean over the reference's pixels that are finite in
+/// both.
 fn dark(test: &Linear, reference: &Linear) -> f64 {
     let finite = || {
         test.rgb

@@ -1,27 +1,27 @@
-//! Regions of a picture: a mean over the whole frame hides where a method fails.
+//! Regions of a picture, because a mean over the whole frame hides where a method fails.
 
 use super::colour::luminance;
 use super::{DARK, Kind, Linear};
 use std::collections::BTreeMap;
 
-/// Some pixels of a picture.
+/// A set of pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
     /// Name of the region.
     pub name: String,
-    /// Whether each pixel belongs to it, rows from the top.
+    /// Whether each pixel belongs to the region, row by row from the top.
     pub mask: Vec<bool>,
 }
 
-/// Openness below which a pixel lies in a corner or under something.
+/// Openness below which a pixel is concave (corners, under objects).
 const CONCAVE: f64 = 0.5;
-/// Openness from which a pixel sees almost all of its surroundings.
+/// Openness above which a pixel is open.
 const OPEN: f64 = 0.9;
-/// A pixel is bright from so many times the mean luminance.
+/// Multiple of the mean luminance from which a pixel is bright.
 const BRIGHT: f64 = 4.0;
 
 impl Region {
-    /// The pixels of a mask picture whose luminance is at least one half.
+    /// Pixels of a mask picture with a luminance of at least 0.5.
     pub fn painted(name: &str, mask: &Linear) -> Region {
         Region {
             name: name.into(),
@@ -29,7 +29,7 @@ impl Region {
         }
     }
 
-    /// Part of the frame, 0 to 1.
+    /// Fraction of the frame, 0 to 1.
     pub fn share(&self) -> f64 {
         self.mask.iter().filter(|m| **m).count() as f64 / self.mask.len().max(1) as f64
     }

@@ -7,7 +7,7 @@ use super::colour::luminance;
 use super::{Linear, MetricError, check, dark, is_finite};
 use rayon::prelude::*;
 
-/// Width and height of the blocks of pixels whose mean luminance is looked at: four pixels halve the noise.
+/// Side of the blocks whose mean luminance is compared [pixels]: four pixels halve the noise.
 const BLOCK: usize = 2;
 
 /// A difference of this size, natural log units, counts half (a step of 10 %), larger ones nearly in full, smaller ones
@@ -15,14 +15,15 @@ const BLOCK: usize = 2;
 /// blocks is as bad as the edge of the same height, and which adds up faint noise over the whole frame.
 const HALF: f64 = 0.1;
 
-/// What each pair of neighbouring blocks counts, natural log units; no number where one of them has no light to compare.
+/// Error of each pair of neighbouring blocks [natural log units]; NaN if a block has no finite
+/// pixel.
 pub(super) struct Structure {
     /// Width and height of the picture, pixels.
     size: (usize, usize),
     columns: usize,
-    /// Block and its right neighbour, rows from the top.
+    /// Between a block and its right neighbour, row by row.
     right: Vec<f32>,
-    /// Block and the one below it.
+    /// Between a block and the one below it.
     below: Vec<f32>,
 }
 
@@ -35,8 +36,8 @@ pub fn structure(test: &Linear, reference: &Linear) -> Result<f64, MetricError> 
     Ok(Structure::new(test, reference, dark(test, reference), 1.0).mean(None))
 }
 
-/// The structure error that a reference's noise alone gives, from the means of two halves of its samples: half the
-/// difference of the halves is distributed as the error of their mean.
+/// The structure error caused by the reference's noise alone, from the means of two halves of its
+/// samples. Half the difference of the halves is distributed like the error of their mean.
 pub fn structure_noise(even: &Linear, odd: &Linear) -> Result<f64, MetricError> {
     check(even, odd)?;
     Ok(Structure::new(even, odd, dark(even, odd), 0.5).mean(None))
@@ -48,7 +49,7 @@ fn counted(difference: f64) -> f64 {
 }
 
 impl Structure {
-    /// `dark`: the luminance that is added before the logarithm, so that black has one. `factor`: of all differences.
+    /// `dark` is added to the luminance before the logarithm; `factor` scales all differences.
     pub(super) fn new(test: &Linear, reference: &Linear, dark: f64, factor: f64) -> Structure {
         let size = (test.size.0 as usize, test.size.1 as usize);
         let columns = size.0.div_ceil(BLOCK);
@@ -84,8 +85,8 @@ impl Structure {
         }
     }
 
-    /// Mean over the pairs of a mask's blocks, those with at least half of their pixels in it, or over all; no number
-    /// without a pair.
+    /// Mean over the pairs of blocks that have at least half of their pixels in the mask, or over
+    /// all pairs; NaN without a pair.
     pub(super) fn mean(&self, mask: Option<&[bool]>) -> f64 {
         let within = mask.map(|mask| self.blocks(mask));
         let is_in = |block: usize| within.as_ref().is_none_or(|list| list[block]);
@@ -100,7 +101,7 @@ impl Structure {
             }
             sums
         };
-        // Row by row, and then in order: the same whatever the number of threads.
+        // Row sums in order, so that the bits do not depend on the number of threads.
         let rows: Vec<(f64, u64)> = (0..self.right.len() / self.columns)
             .into_par_iter()
             .map(|y| row(y * self.columns))
@@ -111,7 +112,7 @@ impl Structure {
         sum / pairs as f64
     }
 
-    /// For each pixel the mean over the pairs that its block is in.
+    /// For each pixel the mean over the pairs of its block.
     pub(super) fn map(&self) -> Vec<f32> {
         let block = |i: usize| {
             let left = if i.is_multiple_of(self.columns) {
@@ -143,7 +144,7 @@ impl Structure {
     }
 }
 
-/// The pixels of a block in a picture of so many pixels; blocks at the right and lower border may have fewer.
+/// The pixel indices of a block; blocks at the right and lower border may be smaller.
 fn pixels(block: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
     let columns = width.div_ceil(BLOCK);
     let (left, top) = (block % columns * BLOCK, block / columns * BLOCK);
@@ -153,8 +154,8 @@ fn pixels(block: usize, width: usize, count: usize) -> impl Iterator<Item = usiz
     rows.flat_map(move |row| (row + left)..(row + (left + BLOCK).min(width)))
 }
 
-/// log(Y + dark) of each block of `picture`, Y the mean luminance of the pixels that are finite in both pictures, at
-/// least 0; no number without one.
+/// log(Y + dark) of each block of `picture`. Y is the non-negative mean luminance of the pixels
+/// that are finite in both pictures; NaN without one.
 fn logarithms(test: &Linear, reference: &Linear, picture: &Linear, dark: f64) -> Vec<f64> {
     let (width, height) = (picture.size.0 as usize, picture.size.1 as usize);
     let block = |block: usize| {

@@ -1,4 +1,4 @@
-//! Every metric, described once: tables, charts, verdicts and options read it here.
+//! The table of metrics, used by tables, charts, verdicts and options.
 
 use super::means::{self, Mask};
 use super::{Compared, NOISE_FACTOR};
@@ -8,62 +8,62 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// A number that says how far a picture is from a reference. Means are over pixels and channels, except where luminance is
-/// named; pixels that are infinite or no number in either picture are left out of all but those of FLIP, where they count
-/// as 1.
+/// An error of a picture against a reference. Means are over pixels and channels, except where
+/// luminance is named. Pixels that are not finite in either picture are ignored, except in FLIP,
+/// where they count as 1.
 pub struct Metric {
-    /// Its name in JSON, in files and on the command line.
+    /// Name in JSON, in files and on the command line.
     pub key: &'static str,
-    /// Its name for people.
+    /// Display name.
     pub title: &'static str,
-    /// Its name where there is little room; nothing if tables for people leave it out.
+    /// Short name for table columns; `None` leaves it out of tables.
     pub head: Option<&'static str>,
     /// Definition, x the picture and r the reference, with unit or range.
     pub help: &'static str,
-    /// Where a picture is best.
+    /// The best value.
     pub best: Best,
-    /// Whether tables of a few metrics have it.
+    /// Whether short tables include it.
     pub brief: bool,
-    /// How much of it the reference's noise makes, where that is known.
+    /// Expected effect of the reference's noise, if known.
     pub noise: Option<OfNoise>,
     pub(super) of: fn(&Compared, Mask) -> f64,
 }
 
-/// Where a picture is best by a metric.
+/// The best value of a metric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Best {
-    /// At 0; there is nothing below.
+    /// 0, the minimum.
     Zero,
-    /// At 1; a ratio is as far from it as its inverse.
+    /// 1; a ratio is as bad as its inverse.
     One,
-    /// Nowhere: pictures are not compared by it.
+    /// None: not used to compare pictures.
     Nowhere,
 }
 
-/// Noise floor of a reference, from the means of its even and of its odd samples.
+/// Noise floor of a reference, from the means of its even and odd samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
-    /// relMSE of one mean against the other. The mean of all samples is four times better.
+    /// relMSE of one mean against the other. The mean of all samples has a quarter of it.
     pub relmse: f64,
     /// Structure error of the mean of all samples ([`super::structure_noise`]), natural log units.
     pub structure: f64,
 }
 
-/// What a reference's noise is to a metric.
+/// Effect of a reference's noise on a metric.
 pub struct OfNoise {
-    /// How it is told.
+    /// Noise estimate of the metric.
     pub of: fn(Noise) -> f64,
-    /// So many times it is what a picture without error has.
+    /// Expected value of a perfect picture, in multiples of the noise.
     pub perfect: f64,
-    /// Differences below so many times it are none.
+    /// Significance threshold of differences, in multiples of the noise.
     pub none: f64,
 }
 
-/// Key of the metric whose noise stands for that of a picture.
+/// Key of the metric whose noise represents the noise of a picture.
 pub const RELMSE: &str = "relmse";
 
-/// All metrics, in the order in which they are shown. `over_occlusion` says not which of two pictures is better: it is the
-/// mean over other pixels for each.
+/// All metrics in display order. `over_occlusion` does not rank two pictures, because it averages
+/// different pixels for each.
 pub static METRICS: &[Metric] = &[
     Metric {
         brief: true,
@@ -168,7 +168,7 @@ pub static METRICS: &[Metric] = &[
     },
 ];
 
-/// An error that few tables have and whose noise is not known.
+/// A metric outside short tables and without a known noise.
 const fn metric(
     key: &'static str,
     title: &'static str,
@@ -188,27 +188,27 @@ const fn metric(
 }
 
 impl Metric {
-    /// The metric of a key.
+    /// The metric with this key.
     pub fn of(key: &str) -> Option<&'static Metric> {
         METRICS.iter().find(|m| m.key == key)
     }
 
-    /// Metrics by which pictures are compared.
+    /// Metrics that rank pictures.
     pub fn ranking() -> impl Iterator<Item = &'static Metric> {
         METRICS.iter().filter(|m| m.best != Best::Nowhere)
     }
 
-    /// Those of short tables.
+    /// Metrics of short tables.
     pub fn few() -> impl Iterator<Item = &'static Metric> {
         METRICS.iter().filter(|m| m.brief)
     }
 
-    /// Its name in tables.
+    /// Name for table columns.
     pub fn short(&self) -> &'static str {
         self.head.unwrap_or(self.title)
     }
 
-    /// How far a value is from the best one.
+    /// Distance of a value from the best one.
     pub fn distance(&self, value: f64) -> f64 {
         if self.best == Best::One {
             value.ln().abs()
@@ -217,7 +217,7 @@ impl Metric {
         }
     }
 
-    /// Name of its distance on axes.
+    /// Axis label of its distance.
     pub fn axis(&self) -> String {
         if self.best == Best::One {
             format!("|ln {}|", self.title)
@@ -226,7 +226,7 @@ impl Metric {
         }
     }
 
-    /// Whether a distance, or a difference of two, is not told from the noise of the reference.
+    /// Whether a distance, or a difference of two, is within the noise of the reference.
     pub fn within(&self, distance: f64, noise: Noise) -> bool {
         self.noise
             .as_ref()
@@ -246,19 +246,19 @@ impl fmt::Debug for Metric {
     }
 }
 
-/// How far a picture is from a reference by every metric; in JSON an object of their keys, `pixels` and `not_finite`.
+/// Values of every metric; serialised as an object by key, with `pixels` and `not_finite`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scores {
     /// In the order of [`METRICS`].
     values: Vec<f64>,
-    /// Pixels.
+    /// Compared pixels.
     pub pixels: u64,
-    /// Pixels that are infinite or no number in either picture.
+    /// Pixels that are not finite in either picture.
     pub not_finite: u64,
 }
 
 impl Scores {
-    /// By these metrics; by others it is no number. Nothing without a finite pixel.
+    /// Computes these metrics; the others are NaN. `None` without a finite pixel.
     pub(super) fn new(
         compared: &Compared,
         mask: Mask,
@@ -283,7 +283,7 @@ impl Scores {
         })
     }
 
-    /// The value of a metric; no number where it has none, or there is no such metric.
+    /// The value of a metric; NaN if it has none or the key is unknown.
     pub fn get(&self, key: &str) -> f64 {
         self.values()
             .find(|v| v.0.key == key)
@@ -295,7 +295,7 @@ impl Scores {
         METRICS.iter().zip(self.values.iter().copied())
     }
 
-    /// Everything that is a number, by its name in JSON.
+    /// All finite values, by their JSON name.
     pub fn numbers(&self) -> BTreeMap<String, f64> {
         let values = self
             .values()
@@ -324,7 +324,7 @@ impl Serialize for Scores {
 }
 
 impl<'de> Deserialize<'de> for Scores {
-    /// A metric that is `null`, or missing because the file is older than it, is no number.
+    /// A metric that is `null`, or missing in an older file, becomes NaN.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Scores, D::Error> {
         let found = BTreeMap::<String, Option<f64>>::deserialize(deserializer)?;
         let value = |key: &str| found.get(key).copied().flatten();

@@ -1,4 +1,4 @@
-//! What a frame leaves on disk: pictures, measurements, and folders with all that made them.
+//! Results on disk: pictures, measurements, and reproducible captures.
 
 pub mod capture;
 pub mod picture;

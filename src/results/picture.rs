@@ -1,4 +1,4 @@
-//! Results as files: PNG for what is display-encoded, EXR for what is linear.
+//! Picture files: PNG for display-encoded, EXR for linear values.
 
 use crate::diagnostics::excerpt::excerpt;
 use crate::diagnostics::panics::caught;
@@ -18,10 +18,11 @@ use std::path::Path;
 /// Files larger than this are refused.
 const MAX_BYTES: u64 = 2 << 30;
 
-/// Writes a PNG (8 bits; floats are clamped, not tone-mapped) or an EXR (32-bit floats), by the path's ending.
+/// Writes a PNG (8 bits; floats are clamped, not tone-mapped) or an EXR (32-bit floats), by the
+/// path's extension. The write is atomic.
 ///
 /// # Errors
-/// Another ending, a folder that cannot be written to. The file is whole or absent.
+/// Another extension; a folder that is not writable.
 pub fn write(path: &Path, texels: &Texels) -> Result<(), LabError> {
     let bytes = match ending(path).as_str() {
         "png" => png(texels)?,
@@ -37,7 +38,7 @@ pub fn write(path: &Path, texels: &Texels) -> Result<(), LabError> {
     Ok(crate::files::write_whole(path, &bytes)?)
 }
 
-/// What a PNG of these texels holds: three bytes a texel.
+/// Texels as the RGB bytes of a PNG.
 pub fn rgb8(texels: &Texels) -> Vec<u8> {
     let rgba: Vec<u8> = if texels.format.name.starts_with("rgba8") {
         texels.bytes.clone()
@@ -56,9 +57,6 @@ pub fn rgb8(texels: &Texels) -> Vec<u8> {
 }
 
 /// Texels as a PNG file (8 bits; floats are clamped, not tone-mapped).
-///
-/// # Errors
-/// A size that PNG does not have.
 pub fn png(texels: &Texels) -> Result<Vec<u8>, LabError> {
     let (width, height) = texels.flat_size();
     let rgb = rgb8(texels);
@@ -78,7 +76,7 @@ pub fn png(texels: &Texels) -> Result<Vec<u8>, LabError> {
 /// Writes a linear picture as an EXR (32-bit floats).
 ///
 /// # Errors
-/// Another ending than .exr, a folder that cannot be written to.
+/// An extension other than .exr; a folder that is not writable.
 pub fn write_linear(path: &Path, picture: &Linear) -> Result<(), LabError> {
     let texels: Vec<[f32; 4]> = picture
         .rgb
@@ -105,9 +103,6 @@ pub fn write_linear(path: &Path, picture: &Linear) -> Result<(), LabError> {
 }
 
 /// Texels as an EXR file (32-bit floats).
-///
-/// # Errors
-/// A size that EXR does not have.
 pub fn exr(texels: &Texels) -> Result<Vec<u8>, LabError> {
     let (width, height) = texels.flat_size();
     let floats = texels.floats();
@@ -117,7 +112,7 @@ pub fn exr(texels: &Texels) -> Result<Vec<u8>, LabError> {
             FlatSamples::F32(floats.iter().map(|p| p[i]).collect()),
         )
     };
-    // EXR keeps channels in alphabetical order.
+    // EXR stores channels in alphabetical order.
     let channels = AnyChannels::sort(
         ["A", "B", "G", "R"]
             .iter()
@@ -140,10 +135,10 @@ pub fn exr(texels: &Texels) -> Result<Vec<u8>, LabError> {
     Ok(out.into_inner())
 }
 
-/// Reads a picture that must have the given size: three channels (0 to 255) a texel of a PNG, four of an EXR.
+/// Reads a picture of the given size: three channels (0 to 255) per texel of a PNG, four of an EXR.
 ///
 /// # Errors
-/// The text for the user: no such file, another size, a damaged file.
+/// A missing or damaged file; another size.
 pub fn read(path: &Path, size: (u32, u32)) -> Result<Vec<f32>, String> {
     check_input(path, MAX_BYTES).map_err(|e| e.to_string())?;
     caught(|| decode_of(path, size)).flatten()
@@ -178,7 +173,7 @@ fn decode_of(path: &Path, size: (u32, u32)) -> Result<Vec<f32>, String> {
     Ok(read_exr(path)?.into_flattened())
 }
 
-/// Width and height of an EXR, from its headers alone: they decide how much memory is taken.
+/// Width and height of an EXR from its headers, before memory is allocated.
 fn exr_size(path: &Path) -> Result<(usize, usize), String> {
     let meta = exr::meta::MetaData::read_from_file(path, false).map_err(|e| e.to_string())?;
     let size = meta
@@ -201,17 +196,18 @@ fn exr_size(path: &Path) -> Result<(usize, usize), String> {
             &meta.headers.iter().flat_map(names).collect::<Vec<_>>(),
         ));
     }
-    // Which layer has the colours is known only after reading.
+    // The layer with the colours is known only after reading.
     match meta.headers.iter().all(|h| h.layer_size == size) {
         true => Ok((size.width(), size.height())),
         false => Err("its layers have different sizes".into()),
     }
 }
 
-/// Channels in a message.
+/// Channels listed in a message.
 const SHOWN: usize = 8;
 
-/// Blender's multilayer files call the colours "ViewLayer.Combined.R" and so on; grey pictures have "Y".
+/// Blender's multilayer files name the colours "ViewLayer.Combined.R" and so on; grey pictures have
+/// "Y".
 fn other_channels(names: &[String]) -> String {
     let more = if names.len() > SHOWN {
         format!(" and {} more", names.len() - SHOWN)
@@ -251,10 +247,11 @@ fn read_exr(path: &Path) -> Result<Vec<[f32; 4]>, String> {
     Ok(image.layer_data.channel_data.pixels.1)
 }
 
-/// Reads a picture of at most [`MAX_PIXELS`] as linear RGB: radiance from an EXR or HDR, decoded sRGB from a PNG.
+/// Reads a picture of at most [`MAX_PIXELS`] as linear RGB: radiance from an EXR or HDR, decoded
+/// sRGB from a PNG.
 ///
 /// # Errors
-/// Another ending, no such file, too large, damaged.
+/// Another extension; a missing, damaged or too large file.
 pub fn read_linear(path: &Path) -> Result<Linear, LabError> {
     let failed = |why: String| LabError::from(FileError::read(path, why));
     check_input(path, MAX_BYTES).map_err(|e| failed(e.to_string()))?;

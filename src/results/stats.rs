@@ -1,4 +1,4 @@
-//! Measurements of a run, in the one JSON schema of the program (`docs/stats.md`).
+//! Measurements of a run in the program's JSON schema (`docs/stats.md`).
 
 use crate::graph::param::{OFF, Params};
 use crate::graph::run::{Execution, FrameTimes};
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// Version of the schema.
 pub const SCHEMA: &str = "conelab-stats-1";
 
-/// Least, median and 95th percentile, ms.
+/// Minimum, median and 95th percentile [ms].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     pub min: f64,
@@ -25,12 +25,12 @@ pub struct Spread {
 pub struct PassStats {
     /// Name in the graph.
     pub name: String,
-    /// What tables and charts count it under: the graph's `stage` of the pass, or its name.
+    /// Group in tables and charts: the graph's `stage` of the pass, or its name.
     #[serde(default)]
     pub stage: String,
     pub gpu_ms: Spread,
     pub frames: usize,
-    /// In how many of them it skipped, which count as 0 ms.
+    /// Frames in which it was skipped; they count as 0 ms.
     #[serde(default)]
     #[serde(alias = "slept")]
     pub skipped: usize,
@@ -57,7 +57,7 @@ impl DeviceStats {
     }
 }
 
-/// What `--json` writes.
+/// The content of `--json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stats {
     /// [`SCHEMA`].
@@ -71,29 +71,29 @@ pub struct Stats {
     pub triangles: usize,
     pub size: [u32; 2],
     pub params: BTreeMap<String, serde_json::Value>,
-    /// Frames run before measuring.
+    /// Warm-up frames.
     pub warmup: usize,
-    /// Whether frames did all, or what changed.
+    /// Whether frames execute all passes or only changed ones.
     #[serde(default)]
     #[serde(alias = "redo")]
     pub execution: Execution,
     /// Every pass that ran, in order.
     pub passes: Vec<PassStats>,
-    /// First to last command on the GPU.
+    /// From the first to the last command on the GPU.
     pub total_gpu_ms: Spread,
     /// Recording and submitting on the CPU.
     pub cpu_ms: Spread,
-    /// Bytes of each resource of the graph.
+    /// Size of each graph resource [bytes].
     pub bytes: BTreeMap<String, u64>,
-    /// Bytes of all of them.
+    /// Total size of the graph's resources [bytes].
     pub total_bytes: u64,
-    /// Bytes of the scene's geometry and textures.
+    /// Size of the scene's geometry and textures [bytes].
     pub scene_bytes: u64,
-    /// Checks of the graph that failed.
+    /// Failed checks of the graph.
     pub warnings: Vec<String>,
 }
 
-/// Least, median and 95th percentile (nearest rank).
+/// Minimum, median and 95th percentile (nearest rank).
 pub fn spread(mut values: Vec<f64>) -> Spread {
     values.sort_by(f64::total_cmp);
     let rank = |q: f64| {
@@ -179,7 +179,7 @@ fn param_values(params: &Params) -> BTreeMap<String, serde_json::Value> {
         .collect()
 }
 
-/// The times as a table, and the memory.
+/// The measurements as a text table.
 pub fn table(stats: &Stats) -> String {
     let mut rows: Vec<(String, Spread)> = Vec::new();
     for pass in &stats.passes {

@@ -1,4 +1,5 @@
-//! Times on a picture: what the GPU spends on each stage or pass, drawn into its corner, in the window and in files.
+//! Timing overlay: GPU time of each stage or pass, drawn into a corner of the picture in the window
+//! and in files.
 
 use crate::graph::Graph;
 use crate::graph::param::Params;
@@ -9,10 +10,10 @@ use egui::ecolor::Hsva;
 use egui::{Align2, Color32, FontId, Painter, Pos2, RawInput, Rect, Vec2};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What the overlay lists.
+/// Rows of the overlay.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Rows {
-    /// Nothing: there is no overlay.
+    /// No overlay.
     #[default]
     #[value(skip)]
     None,
@@ -21,7 +22,7 @@ pub enum Rows {
 }
 
 impl Rows {
-    /// What the key goes on to.
+    /// The next mode of the key.
     pub fn next(self) -> Rows {
         match self {
             Rows::None => Rows::Stages,
@@ -33,24 +34,24 @@ impl Rows {
 
 #[derive(Clone, Debug, Default)]
 pub struct Timers {
-    /// What they are of, a line each.
+    /// Title lines.
     pub title: Vec<String>,
-    /// Name and time, ms, in the graph's order.
+    /// Name and time [ms] in graph order.
     pub rows: Vec<(String, f64)>,
-    /// First to last command on the GPU, ms.
+    /// From the first to the last command on the GPU [ms].
     pub total: f64,
-    /// What the times are over several frames.
+    /// Statistic of the times over several frames.
     pub statistic: &'static str,
 }
 
-/// What follows the name of a pass that was skipped.
+/// Suffix of skipped passes.
 const SKIPPED: &str = " (skipped)";
 const WIDTH: f32 = 226.0;
 const LINE: f32 = 14.0;
 const MARGIN: f32 = 6.0;
 
 impl Timers {
-    /// The times of a graph's passes, by their numbers, with the graph's own words for what it was made with.
+    /// Times of a graph's passes by index, with the graph's title.
     pub fn new(
         rows: Rows,
         graph: &Graph,
@@ -84,7 +85,7 @@ impl Timers {
         }
     }
 
-    /// Marks the rows of passes that were skipped, by their numbers.
+    /// Marks skipped passes by index.
     pub fn mark_skipped(&mut self, graph: &Graph, numbers: &[usize]) {
         let name = |number: &usize| {
             graph
@@ -102,14 +103,14 @@ impl Timers {
         }
     }
 
-    /// The longest of its times, ms: that of the longest bar.
+    /// The longest time [ms], which scales the bars.
     pub fn longest(&self) -> f64 {
         self.rows.iter().map(|r| r.1).fold(0.0, f64::max)
     }
 }
 
-/// Draws times into the upper left or right corner of a picture. Bars are to the scale of `longest` ms, so that those of two sides
-/// can be compared. Rows that do not fit are left out, the shortest first, and summed in one.
+/// Draws times into the upper left or right corner of a picture. Bars are scaled to `longest` ms,
+/// so that two sides are comparable. If space is short, the shortest rows are summed in one.
 pub fn draw(painter: &Painter, picture: Rect, right: bool, timers: &Timers, longest: f64) {
     let lines = timers.title.len() as f32 + 1.0;
     let room = ((picture.height() - 2.0 * MARGIN) / LINE - lines - 1.0).max(0.0) as usize;
@@ -191,7 +192,7 @@ pub fn draw(painter: &Painter, picture: Rect, right: bool, timers: &Timers, long
     }
 }
 
-/// At most so many rows: the longest in their order, and the sum of the others.
+/// At most `room` rows: the longest ones in order, and the sum of the others.
 fn fitting(rows: &[(String, f64)], room: usize) -> Vec<(String, f64)> {
     if rows.len() <= room {
         return rows.to_vec();
@@ -214,7 +215,7 @@ fn fitting(rows: &[(String, f64)], room: usize) -> Vec<(String, f64)> {
         .collect()
 }
 
-/// Times of passes, in order, as those of stages.
+/// Sums times of passes, in order, by stage.
 fn by_stage<'p>(passes: impl Iterator<Item = (&'p str, f64)>) -> Vec<(String, f64)> {
     let mut stages: Vec<(String, f64)> = Vec::new();
     for (stage, ms) in passes {
@@ -226,10 +227,10 @@ fn by_stage<'p>(passes: impl Iterator<Item = (&'p str, f64)>) -> Vec<(String, f6
     stages
 }
 
-/// Names of passes in the order in which they were first drawn.
+/// Names of passes in the order of their first drawing.
 static NAMES: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// The colour of a pass: the same for the same name, in every graph and side, and another for every other one.
+/// The colour of a pass: the same for one name in every graph and side, different for other names.
 pub fn color(name: &str) -> Color32 {
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
     let number = names.iter().position(|n| n == name).unwrap_or_else(|| {
@@ -239,9 +240,9 @@ pub fn color(name: &str) -> Color32 {
     numbered(number)
 }
 
-/// The colour of the name that came so many names after the first.
+/// The colour of the n-th name.
 fn numbered(number: usize) -> Color32 {
-    // Steps of the golden ratio never meet again; neighbours differ in brightness too.
+    // Steps of the golden ratio never repeat; neighbours differ in brightness too.
     let hue = (number as f32 * 0.618_034).fract();
     Hsva::new(
         hue,
@@ -252,7 +253,7 @@ fn numbered(number: usize) -> Color32 {
     .into()
 }
 
-/// A picture with times drawn onto it.
+/// A picture with a timing overlay.
 pub fn stamped(gpu: &Arc<Gpu>, texels: &Texels, timers: &Timers) -> Result<Texels> {
     let [width, height, _] = texels.extent;
     let rgba: Vec<u8> = picture::rgb8(texels)
@@ -322,7 +323,7 @@ mod tests {
         let names: Vec<String> = (0..60).map(|i| format!("pass {i}")).collect();
         let colours: Vec<Color32> = names.iter().map(|n| color(n)).collect();
         assert_eq!(names.iter().map(|n| color(n)).collect::<Vec<_>>(), colours);
-        // Of the first fifty: later ones come nearer.
+        // Only the first fifty; later ones are closer together.
         let first: Vec<Color32> = (0..50).map(numbered).collect();
         let far = |a: Color32, b: Color32| {
             a.to_array()

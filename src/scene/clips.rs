@@ -1,15 +1,15 @@
-//! Animations of one file to choose from.
+//! Choosing an animation by name.
 
 use crate::diagnostics::excerpt::excerpt;
 use crate::diagnostics::nearest;
 
-/// Characters of an error that may quote the file.
+/// Maximum length of an error message that quotes names from the file.
 const MAX_MESSAGE: usize = 400;
 
-/// The warning about each that is not played.
+/// Ending of the warning about each animation that is not played.
 pub(super) const LEFT_OUT: &str = "of several animations of one node the first is played. `clip: \"NAME\"` of a scene file's model chooses another";
 
-/// The number of the clip with a name.
+/// The index of the animation named `clip`.
 pub(super) fn number(clip: &str, names: &[String]) -> Result<usize, String> {
     names.iter().position(|name| name == clip).ok_or_else(|| {
         let hint =

@@ -1,8 +1,8 @@
-//! Texture coordinates of materials: each texture names its source, and vertices have two.
+//! Texture coordinates of materials: each texture names its source, and a vertex has two sets.
 
 use super::Lookup;
 
-/// The two sources of texture coordinates that the vertices of a material have.
+/// The two sources of texture coordinates of a material's vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct UvSources<S> {
     pub first: S,
@@ -16,13 +16,13 @@ pub(super) struct References<S> {
 }
 
 impl<S: Clone + Default + PartialEq> References<S> {
-    /// Adds a texture and gives its number.
+    /// Adds a texture and returns its index.
     pub fn add(&mut self, source: S, lookup: Lookup) -> usize {
         self.list.push((source, lookup));
         self.list.len() - 1
     }
 
-    /// The two sources that most textures take, those of earlier ones first; and whether others are left out.
+    /// The two most used sources, earlier ones first, and whether other sources are dropped.
     pub fn sources(&self) -> (UvSources<S>, bool) {
         let mut counts: Vec<(&S, usize)> = Vec::new();
         for (source, _) in &self.list {
@@ -31,7 +31,7 @@ impl<S: Clone + Default + PartialEq> References<S> {
                 None => counts.push((source, 1)),
             }
         }
-        // The sort is stable.
+        // Ties keep their order, because the sort is stable.
         counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         let mut sources = counts.into_iter().map(|(source, _)| source.clone());
         let found = UvSources {
@@ -41,7 +41,7 @@ impl<S: Clone + Default + PartialEq> References<S> {
         (found, sources.next().is_some())
     }
 
-    /// How a texture is looked up; one of a third source takes the first.
+    /// The lookup of a texture. A texture with a third source falls back to the first set.
     pub fn lookup(&self, reference: Option<usize>, sources: &UvSources<S>) -> Lookup {
         let Some((source, lookup)) = reference.and_then(|i| self.list.get(i)) else {
             return Lookup::default();

@@ -1,4 +1,5 @@
-//! What a bare model file gets, so that opening it shows a lit picture.
+//! Defaults for model files without lights, sky or cameras, so that opening one shows a lit
+//! picture.
 
 use glam::Vec3;
 
@@ -31,8 +32,9 @@ pub(super) fn sun() -> Light {
     }
 }
 
-/// A level view along the longest horizontal axis, from inside its positive end; from another place where that one is
-/// inside of something, or sees nothing. A place costs a tenth of a second at most, and the first is nearly always open.
+/// A level view along the longest horizontal axis, from inside its positive end. If that position
+/// is inside an object or sees nothing, other positions follow. A position costs at most 0.1 s, and
+/// the first one is nearly always free.
 pub(super) fn camera(scene: &Scene) -> Camera {
     if let Some(front) = front(scene) {
         return front;
@@ -54,10 +56,10 @@ pub(super) fn camera(scene: &Scene) -> Camera {
     best.1
 }
 
-/// Thinner than this part of its diagonal a model is flat.
+/// A model thinner than this fraction of its diagonal is flat.
 const FLAT: f32 = 1e-3;
 
-/// A view of all of a flat model from the side that shows fewer back faces; none of other models.
+/// A view of a whole flat model from the side with fewer back faces; `None` for other models.
 fn front(scene: &Scene) -> Option<Camera> {
     let (low, high) = scene.bounds();
     let (centre, extent) = ((low + high) * 0.5, high - low);
@@ -71,7 +73,7 @@ fn front(scene: &Scene) -> Option<Camera> {
         Vec3::Y
     };
     let from = |side: f32| {
-        // A picture is at least as wide as high.
+        // Pictures are at least as wide as high.
         let away = 0.55 * extent.max_element() / (0.5 * FOV_Y).to_radians().tan();
         let eye = centre + axis * (side * away);
         Camera {
@@ -93,8 +95,8 @@ fn front(scene: &Scene) -> Option<Camera> {
     )
 }
 
-/// Where a camera is tried in a scene's bounds: along the axis from the middle, and above the ground, as parts of the extent.
-/// The last is outside, for single bodies.
+/// Candidate camera positions as fractions of the scene's extent: along the axis from the middle,
+/// and above the ground. The last one is outside, for single objects.
 const PLACES: [(f32, f32); 8] = [
     (0.32, 0.2),
     (-0.32, 0.2),
@@ -130,13 +132,13 @@ fn place(scene: &Scene, which: usize, (along, above): (f32, f32)) -> Camera {
     }
 }
 
-/// Least distance of a camera's target that 32-bit numbers keep apart from its eye.
+/// Smallest distance to a target that 32-bit floats resolve at this eye position.
 pub(super) fn least_reach(eye: Vec3) -> f32 {
     4.0 * f32::EPSILON * eye.abs().max_element()
 }
 
-/// Distance of the near plane in a scene with the given diagonal: so small that it hides nothing. Under reversed depth
-/// it costs no precision.
+/// Distance of the near plane for a scene diagonal: small enough to clip nothing. With reversed
+/// depth it costs no precision.
 pub(crate) fn near_plane(diagonal: f32) -> f32 {
     (1e-5 * diagonal).clamp(1e-9, 1e-3)
 }

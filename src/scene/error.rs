@@ -1,4 +1,4 @@
-//! What can go wrong with a scene, and what its user can do about it.
+//! Errors of scenes, each with a remedy.
 
 use crate::files::FileError;
 use std::path::PathBuf;
@@ -17,10 +17,10 @@ pub enum SceneError {
         hint: String,
         source: std::io::Error,
     },
-    /// The callback of the opening said so.
+    /// The `progress` callback cancelled the opening.
     #[error("the opening of the scene was cancelled")]
     Cancelled,
-    /// A model file is not what its name says, or is damaged.
+    /// A model file is damaged or does not match its extension.
     #[error("cannot load the model {}: {message}", path.display())]
     Model { path: PathBuf, message: String },
     /// A scene file has an error at a known place.
@@ -31,7 +31,7 @@ pub enum SceneError {
         column: usize,
         message: String,
     },
-    /// A scene file names a model that is not on this machine.
+    /// A scene file names a model that does not exist on this machine.
     #[error("{}:{line}:{column}: {message}", path.display())]
     NoModel {
         path: PathBuf,
@@ -39,13 +39,13 @@ pub enum SceneError {
         column: usize,
         message: String,
     },
-    /// A picture of the sky that cannot be read; the message names its file.
+    /// An environment map cannot be read; the message names its file.
     #[error("{message}")]
     Environment { message: String },
     /// A file could not be written.
     #[error("{0}. Check that the folder exists, is writable and has space")]
     Write(#[from] FileError),
-    /// The export has an extension that no exporter knows.
+    /// No exporter supports the extension.
     #[error("cannot export to {}: the extension must be .obj, .gltf or .glb", path.display())]
     ExportFormat { path: PathBuf },
 }

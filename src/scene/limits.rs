@@ -1,16 +1,17 @@
-//! How large a scene may be.
+//! Limits on the extent of a scene.
 
 use glam::{Mat4, Vec3};
 
 use super::Scene;
 
-/// Farthest that anything may be from the origin, m: products of four coordinates are still 32-bit numbers.
+/// Largest absolute coordinate [m]: products of four coordinates still fit 32-bit floats.
 pub const MAX_COORDINATE: f32 = 1e9;
 
-/// A smaller scene loses its light: offsets against rounding are as large as it is.
+/// Smallest scene diagonal [m]: offsets against rounding reach this size, and smaller scenes lose
+/// light.
 const MIN_DIAGONAL: f32 = 1e-4;
 
-/// Tells a scene that it is too small.
+/// Adds a warning to a scene that is too small.
 pub(super) fn with_size_told(mut scene: Scene) -> Scene {
     let (low, high) = scene.bounds();
     let diagonal = (high - low).length();
@@ -23,12 +24,12 @@ pub(super) fn with_size_told(mut scene: Scene) -> Scene {
     scene
 }
 
-/// Checks that everything of a scene, moved by a frame, is near enough.
+/// Checks that a scene, transformed by `frame`, stays within [`MAX_COORDINATE`].
 pub(super) fn check_extent(scene: &Scene, frame: Mat4) -> Result<(), String> {
     check_placed(scene, scene.bounds(), frame)
 }
 
-/// [`check_extent`] of a scene whose bounds are known.
+/// [`check_extent`] with known bounds.
 pub(super) fn check_placed(
     scene: &Scene,
     (low, high): (Vec3, Vec3),

@@ -2,30 +2,30 @@
 
 use glam::{Vec2, Vec4};
 
-/// How coordinates go on beyond the picture.
+/// Wrap mode: how coordinates continue outside the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
     /// The picture repeats.
     #[default]
     Repeat,
-    /// The colour of the edge.
+    /// The colour of the edge continues.
     Clamp,
     /// The picture repeats, every other one mirrored.
     Mirror,
 }
 
-/// How a texture is looked up; by default it repeats, is filtered, and takes the first set of coordinates.
+/// How a material samples a texture. Default: repeat, filtered, first set of coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Lookup {
-    /// Along u and v.
+    /// Wrap modes along u and v.
     pub wrap: [Wrap; 2],
-    /// No filter where a texel is larger than a pixel. Where it is smaller, all textures have the same filter.
+    /// Nearest-neighbour magnification. Minification uses one filter for all textures.
     pub nearest: bool,
-    /// Takes `uv_second` of the vertices, not `uv`.
+    /// Uses `uv_second` of the vertices instead of `uv`.
     pub second_set: bool,
 }
 
-/// How the textures of a material are looked up.
+/// Lookups of a material's textures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lookups {
     /// Lookup of the base colour.
@@ -39,7 +39,7 @@ pub struct Lookups {
 }
 
 impl Lookup {
-    /// The set that is used, of two sets of texture coordinates.
+    /// Selects one of two sets of texture coordinates.
     pub fn set(&self, sets: Vec4) -> Vec2 {
         if self.second_set {
             Vec2::new(sets.z, sets.w)
@@ -48,7 +48,7 @@ impl Lookup {
         }
     }
 
-    /// [`Lookup::set`], between 0 and 1 along axes that do not repeat.
+    /// [`Lookup::set`], limited to 0..1 along axes that do not repeat.
     pub fn place(&self, sets: Vec4) -> Vec2 {
         let uv = self.set(sets);
         Vec2::new(self.wrap[0].fold(uv.x), self.wrap[1].fold(uv.y))
@@ -56,7 +56,7 @@ impl Lookup {
 }
 
 impl Wrap {
-    /// A coordinate below 1 where it does not repeat, so that one that repeats there does not begin again.
+    /// A mirrored or clamped coordinate, below 1 so that a repeating sampler does not start over.
     fn fold(self, t: f32) -> f32 {
         let inside = match self {
             Wrap::Repeat => return t,

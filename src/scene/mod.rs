@@ -54,31 +54,32 @@ pub(crate) use transform::origin_of;
 /// Everything that is rendered, and from where.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// What the scene was opened as: a built-in's name or a file's stem.
+    /// A built-in's name or a file's stem.
     pub name: String,
-    /// Triangles, each mesh in a space of its own.
+    /// Triangle meshes, each in its own model space.
     pub meshes: Vec<Mesh>,
-    /// What submeshes are made of, by number.
+    /// Materials, referenced by index.
     pub materials: Vec<Material>,
-    /// What materials refer to, by number.
+    /// Textures, referenced by index.
     pub textures: Vec<Texture>,
-    /// Where meshes stand.
+    /// Meshes placed in the world.
     pub instances: Vec<Instance>,
-    /// Frames that move, those that others are in first.
+    /// Moving frames; a parent comes before its children.
     pub movers: Vec<Mover>,
-    /// Meshes whose vertices move; at most one a mesh.
+    /// Meshes whose vertices move; at most one deformer per mesh.
     pub deformers: Vec<Deformer>,
-    /// Lights without extent.
+    /// Punctual lights.
     pub lights: Vec<Light>,
-    /// Views by name; `default` is the one of a picture that names none.
+    /// Views by name; `default` is used if a picture names none.
     pub cameras: IndexMap<String, Camera>,
-    /// Radiance of the sky: the same in every direction, or times that of the environment's picture.
+    /// Uniform radiance of the sky, or the factor of the environment map.
     pub sky: Vec3,
-    /// The sky as a picture.
+    /// The environment map.
     pub environment: Option<Environment>,
-    /// The median distance of what the scene's own camera sees, when it was opened, m; 0: not known.
+    /// Median distance visible from the default camera when the scene was opened [m]; 0 if unknown.
     pub seen_distance: f32,
-    /// What is not as its author meant it (missing files, dropped triangles, stand-ins); each names the file.
+    /// Deviations from the source file (missing files, dropped triangles, placeholders); each names
+    /// the file.
     pub warnings: Vec<String>,
 }
 
@@ -92,16 +93,16 @@ pub struct Vertex {
     pub normal: [f32; 3],
     /// Unit length; w is the sign of the bitangent `cross(normal, tangent) * w`, which points up in the normal map.
     pub tangent: [f32; 4],
-    /// Where in textures; v grows downwards.
+    /// Texture coordinates; v grows downwards.
     pub uv: [f32; 2],
-    /// Second set, for textures with [`Lookup::second_set`].
+    /// Second set of texture coordinates, for textures with [`Lookup::second_set`].
     pub uv_second: [f32; 2],
     /// Multiplies the base colour: linear RGB and alpha, 0 to 1.
     pub color: [f32; 4],
 }
 
 impl Default for Vertex {
-    /// White, all else 0.
+    /// A white vertex; everything else is 0.
     fn default() -> Self {
         Vertex {
             color: [1.0; 4],
@@ -110,69 +111,70 @@ impl Default for Vertex {
     }
 }
 
-/// Indexed triangles in one model space, split into submeshes of one material each.
+/// Indexed triangles in one model space, split into submeshes with one material each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// As the file calls it.
+    /// Name from the file.
     pub name: String,
     /// In the order of the file.
     pub vertices: Vec<Vertex>,
-    /// Three a triangle, counter-clockwise from its front.
+    /// Three per triangle, counter-clockwise seen from the front.
     pub indices: Vec<u32>,
-    /// Runs that cover all indices.
+    /// Ranges that cover all indices.
     pub submeshes: Vec<Submesh>,
 }
 
-/// A run of a mesh's indices that has one material.
+/// A range of a mesh's indices with one material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Submesh {
-    /// Where it begins, in indices.
+    /// Offset in indices.
     pub first_index: u32,
-    /// Three times its triangles.
+    /// Three per triangle.
     pub index_count: u32,
-    /// A number in [`Scene::materials`].
+    /// Index into [`Scene::materials`].
     pub material: u32,
 }
 
-/// Metallic-roughness material; every texture multiplies the factor beside it.
+/// Metallic-roughness material; each texture multiplies its factor.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(default, deny_unknown_fields)]
 pub struct Material {
-    /// As the file calls it.
+    /// Name from the file.
     #[serde(skip)]
     pub name: String,
     /// Linear RGB and alpha.
     pub base_color: Vec4,
-    /// 0 for what is no metal, to 1.
+    /// 0 (dielectric) to 1 (metal).
     pub metallic: f32,
     /// Perceptual roughness, 0 to 1.
     pub roughness: f32,
-    /// Index of refraction of what is no metal; 0: it reflects all that `specular_color` lets it.
+    /// Index of refraction of a dielectric; 0 removes the Fresnel limit, so that `specular_color`
+    /// alone decides.
     pub ior: f32,
-    /// Scales what it reflects specularly, 0 to 1, metals apart.
+    /// Factor of the dielectric specular reflection, 0 to 1.
     pub specular: f32,
-    /// Colours that at normal incidence.
+    /// Tint of the dielectric reflection at normal incidence.
     pub specular_color: Vec3,
     /// Emitted radiance.
     pub emission: Vec3,
-    /// A fragment whose alpha is below this is not there; 0 = opaque, no mask.
+    /// Fragments with a lower alpha are discarded; 0 disables the mask.
     pub alpha_cutoff: f32,
-    /// Whether its back is lit as its front is.
+    /// Whether back faces are shaded like front faces.
     pub two_sided: bool,
     /// Scales the x and y of the normal map.
     pub normal_scale: f32,
-    /// RGB is decoded from sRGB; alpha is for the mask.
+    /// sRGB colour; alpha is the mask.
     pub base_color_texture: Option<u32>,
     /// G = roughness, B = metallic.
     pub metallic_roughness_texture: Option<u32>,
-    /// In the space of the tangents.
+    /// Tangent-space normals.
     pub normal_texture: Option<u32>,
-    /// RGB, decoded from sRGB.
+    /// sRGB colour.
     pub emission_texture: Option<u32>,
-    /// How those are looked up.
+    /// Lookups of these textures.
     #[serde(skip)]
     pub lookups: Lookups,
-    /// Whether the colour of vertices multiplies the emission too.
+    /// Whether vertex colours multiply the emission too.
     #[serde(skip)]
     pub tinted_emission: bool,
 }
@@ -209,13 +211,13 @@ impl Mesh {
 }
 
 impl Material {
-    /// Whether its mask cuts everything out.
+    /// Whether the mask discards the whole surface.
     pub fn is_left_out(&self) -> bool {
         self.base_color.w < self.alpha_cutoff
     }
 
-    /// Reflectance of the dielectric part at normal incidence, and in w at grazing angles (KHR_materials_specular); 0.04 and
-    /// 1 unless the author says otherwise.
+    /// Reflectance of the dielectric part at normal incidence (xyz) and at grazing angles (w), as
+    /// in KHR_materials_specular. Default: 0.04 and 1.
     pub fn dielectric(&self) -> Vec4 {
         let n = f64::from(self.ior);
         let from_index = if n == 0.0 {
@@ -227,18 +229,18 @@ impl Material {
     }
 }
 
-/// An image with its mip levels, ready for upload.
+/// An image with its mip levels, ready to upload.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// The file, or what it is in one.
+    /// The file, or a name inside a model file.
     pub name: String,
     /// Texels of level 0.
     pub width: u32,
     /// Texels of level 0.
     pub height: u32,
-    /// What its bytes are.
+    /// Encoding of the texels.
     pub format: TextureFormat,
-    /// Level 0 first, tightly packed rows; the full chain unless the file stored a shorter one.
+    /// Level 0 first, tightly packed rows; the full chain unless the file stores a shorter one.
     pub mips: Vec<Vec<u8>>,
 }
 
@@ -249,21 +251,21 @@ pub enum TextureFormat {
     Rgba8Srgb,
     /// Four bytes, linear.
     Rgba8Unorm,
-    /// BC1 (DXT1): RGB and a bit of alpha in 8 bytes a block, sRGB.
+    /// BC1 (DXT1): RGB and 1-bit alpha, 8 bytes per block, sRGB.
     Bc1Srgb,
-    /// BC1 (DXT1): RGB and a bit of alpha in 8 bytes a block, linear.
+    /// BC1 (DXT1): RGB and 1-bit alpha, 8 bytes per block, linear.
     Bc1Unorm,
-    /// BC2 (DXT3): RGB and four bits of alpha, sRGB.
+    /// BC2 (DXT3): RGB and 4-bit alpha, sRGB.
     Bc2Srgb,
-    /// BC2 (DXT3): RGB and four bits of alpha, linear.
+    /// BC2 (DXT3): RGB and 4-bit alpha, linear.
     Bc2Unorm,
-    /// BC3 (DXT5): RGB and smooth alpha, sRGB.
+    /// BC3 (DXT5): RGB and interpolated alpha, sRGB.
     Bc3Srgb,
-    /// BC3 (DXT5): RGB and smooth alpha, linear.
+    /// BC3 (DXT5): RGB and interpolated alpha, linear.
     Bc3Unorm,
     /// BC4: one channel, linear.
     Bc4Unorm,
-    /// BC5: two channels, as of normals, linear.
+    /// BC5: two channels, for example normals, linear.
     Bc5Unorm,
     /// BC7: RGBA, sRGB.
     Bc7Srgb,
@@ -282,7 +284,7 @@ impl TextureFormat {
         }
     }
 
-    /// Bytes of one level of the given size.
+    /// Bytes of one mip level.
     pub fn level_bytes(self, width: u32, height: u32) -> usize {
         let (edge, bytes) = self.block();
         width.div_ceil(edge) as usize * height.div_ceil(edge) as usize * bytes
@@ -295,27 +297,27 @@ impl TextureFormat {
     }
 }
 
-/// A mesh placed in the world, at rest or moving.
+/// A placed mesh, static or moving.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instance {
-    /// As the file calls it.
+    /// Name from the file.
     pub name: String,
-    /// A number in [`Scene::meshes`].
+    /// Index into [`Scene::meshes`].
     pub mesh: u32,
-    /// From the model into the frame that it moves with, or into the world.
+    /// From model space to the mover's frame, or to the world.
     pub transform: Mat4,
-    /// A number in [`Scene::movers`]: what it moves with, if it moves.
+    /// Index into [`Scene::movers`]; `None` for a static instance.
     pub mover: Option<u32>,
 }
 
-/// Where a light's energy comes from.
+/// Emission pattern of a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
-    /// A sun: parallel rays.
+    /// Parallel rays, for example of the sun.
     Directional,
-    /// A lamp that shines evenly in all directions.
+    /// Uniform in all directions.
     Point,
-    /// Half-angles in radians: full strength inside `inner`, none outside `outer`.
+    /// Half-angles of the cone in radians: full intensity inside `inner`, none outside `outer`.
     Spot {
         /// Radians.
         inner: f32,
@@ -324,16 +326,16 @@ pub enum LightKind {
     },
 }
 
-/// A light without extent. Emitting surfaces are materials instead.
+/// A punctual light. Emissive surfaces are materials instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
-    /// By which experiments change it.
+    /// Name that experiments use to change the light.
     pub name: String,
-    /// Sun, lamp or spot.
+    /// Emission pattern.
     pub kind: LightKind,
     /// Irradiance on a facing surface (W/m^2) for a directional light, radiant intensity (W/sr) otherwise.
     pub color: Vec3,
-    /// World, m; without meaning for a directional light.
+    /// World [m]; ignored for a directional light.
     pub position: Vec3,
     /// Unit length, the way the light travels.
     pub direction: Vec3,
@@ -341,19 +343,19 @@ pub struct Light {
     pub shadow: bool,
 }
 
-/// A perspective view.
+/// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// World, m.
     pub eye: Vec3,
-    /// What is in the middle of the picture; world, m.
+    /// Point in the centre of the picture; world [m].
     pub target: Vec3,
-    /// What is up in the picture; need not be at right angles to the view.
+    /// Up direction; need not be orthogonal to the view.
     pub up: Vec3,
     /// Vertical field of view in degrees.
     pub fov_y: f32,
-    /// What is nearer is cut off.
+    /// Distance of the near plane [m].
     pub near: f32,
-    /// Cuts off nothing; files have it. Infinite where nobody has said it.
+    /// Distance of the far plane [m]; unused when rendering, kept for export. Default: infinity.
     pub far: f32,
 }

@@ -119,10 +119,10 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     })
 }
 
-/// A material with the number of its library.
+/// A material with the index of its library.
 type Owned = (usize, Read);
 
-/// The materials of all libraries, in their order.
+/// The materials of all libraries, in order.
 fn read_materials(
     libraries: &mut [Library],
     finder: &mut Finder,
@@ -141,7 +141,7 @@ fn read_materials(
     materials
 }
 
-/// The surface of each used name; the last one is that of faces without a material.
+/// The surface of each used name; the last one is for faces without a material.
 fn surfaces(
     used: &IndexSet<String>,
     libraries: &[Library],
@@ -151,12 +151,12 @@ fn surfaces(
     let mut by_name: HashMap<&str, usize> = HashMap::new();
     let mut next = 0;
     for library in libraries {
-        // The last material of a name counts in a library, and the first library that has it.
+        // Within a library the last definition of a name wins; among libraries, the first one.
         let mut own: HashMap<&str, usize> = HashMap::new();
         for (index, definition) in (next..).zip(&library.materials) {
             own.insert(&definition.name, index);
         }
-        // A text behind a name is a comment, or a part of the name by which it is used.
+        // Text after a name is a comment or a part of the name.
         for (index, definition) in (next..).zip(&library.materials) {
             own.entry(&definition.whole).or_insert(index);
         }

@@ -1,4 +1,4 @@
-//! Opening a scene by whatever names it: a built-in, a scene file or a model file.
+//! Opening a scene by name: a built-in, a scene file or a model file.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use super::progress::{Progress, Watch};
 use super::texture::with_kinds_told;
 use super::{Material, Scene, SceneError, builtin, defaults, fbx, file, gltf, obj};
 
-/// How often the callback is asked while a scene loads.
+/// Interval between calls of the callback while a scene loads.
 const ASK: Duration = Duration::from_millis(20);
 
 impl Scene {
@@ -33,8 +33,8 @@ impl Scene {
         Scene::open_with_files(spec, progress).0
     }
 
-    /// [`Scene::open`], and the files that were read or looked for, in order of their names. When one of them changes, the
-    /// scene may be another; this holds for a scene that could not be opened too.
+    /// [`Scene::open`], and the sorted list of files that were read or looked up. The list is also
+    /// complete for a scene that failed to open, so that a change of any of them can be watched.
     pub(crate) fn open_with_files(
         spec: &str,
         progress: &dyn Fn(&str, f32) -> ControlFlow<()>,
@@ -50,8 +50,8 @@ fn open_watched(
     watch: &Arc<Watch>,
     progress: &dyn Fn(&str, f32) -> ControlFlow<()>,
 ) -> Result<Scene, SceneError> {
-    // Decoders and parsers cannot be interrupted. They run on another thread; once cancelled, the step that is
-    // under way ends unheard and the next one does not begin.
+    // Decoders and parsers cannot be interrupted, so they run on another thread. After a
+    // cancellation the current step ends unnoticed and the next one does not begin.
     let (send, result) = mpsc::channel();
     let worker = std::thread::spawn({
         let (spec, watch) = (spec.to_owned(), watch.clone());
@@ -74,14 +74,14 @@ fn open_watched(
             Err(mpsc::RecvTimeoutError::Disconnected) => break,
         }
     }
-    // It ended without an answer.
+    // The worker ended without a result.
     match worker.join() {
         Err(panic) => std::panic::resume_unwind(panic),
         Ok(()) => Err(SceneError::Cancelled),
     }
 }
 
-/// A scene by whatever names it.
+/// Opens a scene by name, on the worker thread.
 fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
     if builtin::is_one(spec) {
         return builtin::open(spec, progress);
@@ -110,7 +110,8 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
-/// A model with what its file says and no more; `clip`: the animation that is played, where it is not the first.
+/// The content of a model file without defaults; `clip` names the animation to play instead of the
+/// first.
 pub(super) fn load_model(
     path: &Path,
     clip: Option<&str>,
@@ -147,7 +148,7 @@ pub(super) fn load_model(
         path: path.into(),
         message,
     })?;
-    // What its materials leave out was told.
+    // Materials that discard everything already have a warning.
     if scene.triangle_count() == 0 && !scene.materials.iter().any(Material::is_left_out) {
         scene.warnings.push(format!(
             "{}: no triangles: there is nothing to see",

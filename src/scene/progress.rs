@@ -1,4 +1,5 @@
-//! Word from the thread that loads a scene to the one that waits for it, and back.
+//! Progress and cancellation between the thread that loads a scene and the thread that waits for
+//! it.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -7,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::SceneError;
 
-/// What both threads see.
+/// State shared by both threads.
 #[derive(Debug)]
 pub(super) struct Watch {
     stopped: AtomicBool,
@@ -16,7 +17,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Before anything was done.
+    /// The initial state.
     pub fn new(what: &str) -> Watch {
         Watch {
             stopped: AtomicBool::new(false),
@@ -25,14 +26,14 @@ impl Watch {
         }
     }
 
-    /// What is being done, and the share done.
+    /// The current step and the completed fraction, 0 to 1.
     pub fn now(&self) -> (String, f32) {
         self.now
             .lock()
             .map_or_else(|e| e.into_inner().clone(), |now| now.clone())
     }
 
-    /// All files that were read or looked for until now, sorted.
+    /// All files read or looked up so far, sorted.
     pub fn files(&self) -> Vec<PathBuf> {
         self.files
             .lock()
@@ -41,7 +42,7 @@ impl Watch {
             .collect()
     }
 
-    /// Nobody waits for the scene any more.
+    /// Cancels the loading.
     pub fn stop(&self) {
         self.stopped.store(true, Relaxed);
     }
@@ -75,7 +76,7 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// Says what is begun, and how much is done, 0 to 1. An error when nobody waits any more.
+    /// Reports a step and its completed fraction, 0 to 1. Fails after a cancellation.
     pub fn step(self, what: &str, done: f32) -> Result<(), SceneError> {
         if let Ok(mut now) = self.watch.now.lock() {
             *now = (what.to_owned(), self.from + done * self.size);
@@ -87,15 +88,15 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// Notes a file that is read or looked for: another scene may come of it when it changes.
+    /// Records a file that is read or looked up; the scene may change with it.
     pub fn reads(self, file: &Path) {
         if let Ok(mut files) = self.watch.files.lock() {
             files.insert(file.into());
         }
     }
 
-    /// Whether nobody waits any more. Loops ask it and then end with any error: [`Scene::open`](super::Scene::open)
-    /// knows that it was cancelled.
+    /// Whether loading was cancelled. Loops poll it and then end with any error;
+    /// [`Scene::open`](super::Scene::open) reports the cancellation.
     pub fn stopped(self) -> bool {
         self.watch.stopped.load(Relaxed)
     }

@@ -1,4 +1,4 @@
-//! How far a camera sees: what tells a volume of voxels where a scene needs small ones.
+//! The distances that a camera sees; they decide where a voxel volume needs small voxels.
 
 use super::{Camera, Scene};
 use glam::{Vec3, Vec3A};
@@ -6,21 +6,21 @@ use obvhs::{ray::Ray, triangle::Triangle};
 
 /// Rays across a picture of 16:9, by row and column.
 const RAYS: (usize, usize) = (6, 10);
-/// Triangles that are looked at; of larger scenes, as many spread evenly. Costs a tenth of a second at most.
+/// Triangles that are tested; larger scenes are subsampled evenly. Costs at most 0.1 s.
 const TRIANGLES: usize = 1 << 20;
 
-/// What a camera sees, by a few rays across its picture.
+/// Visibility from a camera, by a few rays across its picture.
 pub(super) struct Seen {
-    /// The part of the rays that meet a surface.
+    /// Fraction of rays that hit a surface.
     pub hits: f32,
-    /// The part that meets the back of one.
+    /// Fraction of rays that hit a back face.
     pub backs: f32,
-    /// Median distance of the surfaces, m; `None` where there are none.
+    /// Median distance of the hits [m]; `None` without hits.
     pub median: Option<f32>,
 }
 
 impl Scene {
-    /// With [`Scene::seen_distance`] of its camera `default`, or of the first where none is called so.
+    /// Sets [`Scene::seen_distance`] from the camera `default`, or from the first one.
     pub(super) fn with_seen_distance(mut self) -> Scene {
         let camera = self
             .cameras
@@ -30,7 +30,7 @@ impl Scene {
         self
     }
 
-    /// What a camera sees in the scene's first pose.
+    /// Traces a few rays from a camera in the scene's first pose.
     pub(super) fn seen_by(&self, camera: &Camera) -> Seen {
         let rays = rays(camera);
         let mut nearest = vec![(f32::INFINITY, false); rays.len()];
@@ -82,7 +82,7 @@ fn corners_of(mesh: &super::Mesh, indices: &[u32]) -> Option<[Vec3; 3]> {
     Some([corner(0)?, corner(1)?, corner(2)?])
 }
 
-/// From the camera, which is the origin.
+/// Rays from the camera, which is the origin.
 fn rays(camera: &Camera) -> Vec<Ray> {
     let ahead = (camera.target - camera.eye)
         .try_normalize()

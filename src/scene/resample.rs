@@ -1,4 +1,5 @@
-//! Textures at another size, uncompressed: for arrays whose layers must agree, and devices without block compression.
+//! Uncompressed textures at another size: for arrays whose layers must match, and for devices
+//! without block compression.
 
 use super::texture::{Filter, first_level_rgba, texture_from_rgba};
 use super::{Texture, TextureFormat};
@@ -6,14 +7,15 @@ use image::RgbaImage;
 use image::imageops::{FilterType, resize};
 
 impl TextureFormat {
-    /// Whether texels come in compressed blocks.
+    /// Whether the format is block-compressed.
     pub(crate) fn is_compressed(self) -> bool {
         !matches!(self, TextureFormat::Rgba8Srgb | TextureFormat::Rgba8Unorm)
     }
 }
 
 impl Texture {
-    /// The same picture in RGBA8 at `width` x `height`, with new mips. A texture that cannot be decoded becomes magenta.
+    /// The same picture in RGBA8 at `width` x `height`, with new mips. A texture that cannot be
+    /// decoded becomes magenta.
     pub(crate) fn resampled(&self, width: u32, height: u32) -> Texture {
         let format = if self.format.is_srgb() {
             TextureFormat::Rgba8Srgb

@@ -1,9 +1,10 @@
-//! Triangles in another order, to show that a result does not depend on it.
+//! Triangles in random order, to test that a result does not depend on the order.
 
 use super::Scene;
 
 impl Scene {
-    /// A copy with the triangles inside each submesh in random order; a triangle's own vertices keep theirs.
+    /// A copy with shuffled triangles within each submesh; the vertices of a triangle keep their
+    /// order.
     pub fn shuffled(&self, seed: u64) -> Scene {
         let mut scene = self.clone();
         let mut state = seed;
@@ -12,7 +13,7 @@ impl Scene {
                 let range = submesh.first_index as usize
                     ..(submesh.first_index + submesh.index_count) as usize;
                 let triangles = mesh.indices[range].as_chunks_mut::<3>().0;
-                // Fisher and Yates, from the end.
+                // Fisher-Yates shuffle.
                 for i in (1..triangles.len()).rev() {
                     triangles.swap(i, (splitmix(&mut state) % (i as u64 + 1)) as usize);
                 }
@@ -22,7 +23,7 @@ impl Scene {
     }
 }
 
-/// Next number of the SplitMix64 sequence (Steele et al. 2014): the same on every machine.
+/// Next number of the SplitMix64 sequence (Steele et al. 2014), identical on every machine.
 pub(crate) fn splitmix(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mut z = *state;

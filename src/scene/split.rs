@@ -1,4 +1,4 @@
-//! Splitting triangles until none is longer than a given edge, for methods that sample triangles by vertices.
+//! Splitting of long triangle edges, for methods that sample triangles at vertices.
 
 use std::collections::HashMap;
 
@@ -54,8 +54,9 @@ impl Scene {
         scene
     }
 
-    /// Bytes that the vertices of [`Scene::split_triangles`] take at least, worked out without splitting: no triangle with
-    /// edges of `max_edge` has more than the area of the equilateral one, and there are half as many vertices as triangles.
+    /// Lower bound of the vertex bytes of [`Scene::split_triangles`], without splitting. No
+    /// triangle with edges of `max_edge` has more area than the equilateral one, and there are half
+    /// as many vertices as triangles.
     pub fn least_split_bytes(&self, max_edge: f32) -> f64 {
         let largest = 0.25 * 3f64.sqrt() * f64::from(max_edge).powi(2);
         let triangles = |i: usize| {
@@ -94,8 +95,8 @@ fn area(mesh: &Mesh, axes: &Mat3) -> f64 {
         .sum()
 }
 
-/// The mesh split round by round, and what its new vertices are in the middle of; none when it would have more triangles
-/// than the limit.
+/// The mesh split round by round, and the edge that each new vertex halves; `None` above the
+/// triangle limit.
 fn split_mesh(
     mesh: &Mesh,
     too_long: &(impl Fn(Vec3, Vec3) -> bool + Sync),
@@ -165,7 +166,7 @@ fn split_once(mesh: &Mesh, marks: &[[bool; 3]], halves: &mut Vec<[u32; 2]>) -> M
     split
 }
 
-/// Replaces a triangle by 1 to 4 with the same winding, by which of its edges are marked.
+/// Splits a triangle into 1 to 4 triangles with the same winding at its marked edges.
 fn split_triangle(
     mesh: &mut Mesh,
     midpoints: &mut HashMap<(u32, u32), u32>,
@@ -173,7 +174,7 @@ fn split_triangle(
     marks: [bool; 3],
 ) {
     let count = marks.iter().filter(|&&m| m).count();
-    // Turned so that one marked edge is 0-1, or two marked ones are 0-1 and 1-2.
+    // Rotated so that one marked edge is 0-1, or two are 0-1 and 1-2.
     let turn = match count {
         1 => marks.iter().position(|&m| m).unwrap_or(0),
         2 => (marks.iter().position(|&m| !m).unwrap_or(2) + 1) % 3,
@@ -196,7 +197,8 @@ fn split_triangle(
         2 => {
             let (ab, bc) = (middle(mesh, a, b), middle(mesh, b, c));
             mesh.indices.extend([ab, b, bc]);
-            // The diagonal that is a median of the longer marked edge is shorter than both: this ends.
+            // The median of the longer marked edge is shorter than both edges, so splitting
+            // terminates.
             if length(mesh, a, b) >= length(mesh, b, c) {
                 mesh.indices.extend([a, ab, c, ab, bc, c]);
             } else {

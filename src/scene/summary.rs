@@ -1,4 +1,4 @@
-//! The scene in words and numbers.
+//! A scene as text and as JSON.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use super::{Camera, Light, LightKind, Material, Scene, Texture};
 
 impl Scene {
-    /// Counts, bounds, tables of materials and textures, lights, cameras and warnings, as text of several lines.
+    /// Counts, bounds, materials, textures, lights, cameras and warnings as text.
     pub fn summary(&self) -> String {
         let mut text = String::new();
         // Writing into a string cannot fail.
@@ -15,8 +15,8 @@ impl Scene {
         text
     }
 
-    /// The same as JSON, without texels and vertices. Lengths are in metres, angles in degrees, light in W/(m² sr), W/sr or
-    /// W/m² as the scene file has them.
+    /// The summary as JSON, without texels and vertices. Lengths are in metres, angles in degrees,
+    /// and light in the units of the scene file: W/(m² sr), W/sr or W/m².
     pub(crate) fn description(&self) -> Value {
         let (low, high) = self.bounds();
         let texture = |number: Option<u32>| {

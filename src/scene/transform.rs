@@ -1,17 +1,18 @@
-//! Where shaders have their origin, and how many triangles there are.
+//! Origin of the shaders' world, and triangle counts.
 
 use glam::Vec3;
 
 use super::{Mesh, Scene};
 
 impl Scene {
-    /// Where the world of shaders begins, seen from the scene's: at its own origin, unless the scene lies so far from it that
-    /// 32-bit coordinates would be coarse for its size. Then near its middle, in steps that round nothing of what is there.
+    /// Origin of the shaders' world in scene coordinates. It is 0 unless the scene is so far away
+    /// that 32-bit coordinates become coarse. Then it is near the middle of the scene, on a grid
+    /// that keeps the coordinates exact.
     pub fn origin(&self) -> Vec3 {
         origin_of(self.bounds())
     }
 
-    /// Triangles over all instances (a mesh placed twice counts twice).
+    /// Triangles of all instances; a mesh placed twice counts twice.
     pub fn triangle_count(&self) -> usize {
         let of_mesh = |i: u32| self.meshes.get(i as usize).map_or(0, Mesh::triangle_count);
         self.instances
@@ -20,7 +21,7 @@ impl Scene {
             .sum()
     }
 
-    /// How many of them emit light.
+    /// Emissive triangles of all instances.
     pub(crate) fn emitting_triangle_count(&self) -> usize {
         let emits = |m: u32| {
             self.materials
@@ -46,7 +47,7 @@ impl Scene {
     }
 }
 
-/// [`Scene::origin`] of a scene with these bounds.
+/// [`Scene::origin`] for given bounds.
 pub(crate) fn origin_of((low, high): (Vec3, Vec3)) -> Vec3 {
     let (centre, diagonal) = ((low + high) * 0.5, (high - low).length());
     if !(diagonal > 0.0 && centre.length() > 8.0 * diagonal) {
@@ -57,7 +58,7 @@ pub(crate) fn origin_of((low, high): (Vec3, Vec3)) -> Vec3 {
 }
 
 impl Mesh {
-    /// Triangles of the mesh itself.
+    /// Triangles of the mesh.
     pub fn triangle_count(&self) -> usize {
         self.submeshes
             .iter()

@@ -1,11 +1,12 @@
-//! Warnings of a file, one line a kind: a file with a thousand channels of one kind gets one line with a count.
+//! Warnings about one file, grouped by kind, so that a thousand similar channels give one line with
+//! a count.
 
 use std::fmt::Display;
 
-/// Names that a line shows; the rest is counted.
+/// Names listed per line; the rest is counted.
 const SHOWN: usize = 3;
 
-/// Warnings about one file, gathered by kind: content that is left out or read in another way.
+/// Warnings about one file by kind: content that is dropped or interpreted differently.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Warnings {
     kinds: Vec<Kind>,
@@ -14,14 +15,14 @@ pub(crate) struct Warnings {
 #[derive(Clone, Debug)]
 struct Kind {
     what: String,
-    /// The first objects concerned.
+    /// The first affected objects.
     names: Vec<String>,
     count: usize,
 }
 
 impl Warnings {
-    /// Adds a warning. `what` is the sentence of its kind: the content, its treatment, and a way on if there is one.
-    /// `name` is the object concerned; an empty name is counted and not shown.
+    /// Adds a warning. `what` is the sentence of its kind: the content, its treatment, and a remedy
+    /// if there is one. `name` is the affected object; an empty name is counted but not listed.
     pub fn add(&mut self, what: impl Into<String>, name: impl Display) {
         let (what, name) = (what.into(), name.to_string());
         let kind = match self.kinds.iter_mut().position(|k| k.what == what) {
@@ -42,7 +43,7 @@ impl Warnings {
         }
     }
 
-    /// A line a kind, in the order in which kinds came, each behind the file's name.
+    /// One line per kind, in order of first occurrence, each prefixed with the file's name.
     pub fn lines(&self, file: impl Display) -> Vec<String> {
         self.kinds
             .iter()

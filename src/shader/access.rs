@@ -1,15 +1,16 @@
-//! What a module does with its storage buffers and images: told by its instructions, not by the qualifiers of GLSL.
+//! Accesses of a module to its storage buffers and images, derived from its instructions instead of
+//! GLSL qualifiers.
 
 use super::strip::{HEADER, instructions, opcode};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What a shader does with the content of a resource.
+/// Accesses to the content of a resource.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Access {
-    /// Loads, atomics that give the old value.
+    /// Loads, and atomics that return the old value.
     pub read: bool,
     pub write: bool,
-    /// Asks for the size of an image, or hands it on.
+    /// Size queries of an image, and image arguments of calls.
     pub size: bool,
 }
 
@@ -45,9 +46,9 @@ const BINDING: u32 = 33;
 const NON_WRITABLE: u32 = 24;
 const NON_READABLE: u32 = 25;
 
-/// Instructions that name what there is and use none of it: OpName, OpMemberName, OpEntryPoint, OpDecorate, OpMemberDecorate,
-/// those that hold numbers or text, and those that take values with numbers, which a block is not (OpExtInst, OpVectorShuffle,
-/// OpCompositeExtract, OpCompositeInsert).
+/// Instructions that reference an id without accessing it: OpName, OpMemberName, OpEntryPoint,
+/// OpDecorate, OpMemberDecorate, instructions with literals, and instructions on values that are
+/// never blocks (OpExtInst, OpVectorShuffle, OpCompositeExtract, OpCompositeInsert).
 const NAMES_ONLY: [u32; 21] = [
     3,
     4,
@@ -78,7 +79,7 @@ struct Variable {
     buffer: bool,
 }
 
-/// What a module does with each of its storage buffers and images, by binding number: SPIR-V 1.6, sections 3.52.8 (memory),
+/// The accesses to each storage buffer and image by binding: SPIR-V 1.6, sections 3.52.8 (memory),
 /// 3.52.10 (images) and 3.52.18 (atomics).
 pub(super) fn accesses(words: &[u32]) -> BTreeMap<u32, Access> {
     let variables = variables(words);
@@ -90,7 +91,8 @@ pub(super) fn accesses(words: &[u32]) -> BTreeMap<u32, Access> {
     for i in instructions(words) {
         for (id, access) in touched(i) {
             let origin = origins.get(&id);
-            // A store that goes to one of several images cannot be taken out for one of them: no mere write.
+            // A store to one of several possible images cannot be removed for one of them, so it
+            // also counts as a read.
             let access = if origin.is_some_and(|o| o.len() > 1) && access == WRITE {
                 BOTH
             } else {
@@ -101,7 +103,7 @@ pub(super) fn accesses(words: &[u32]) -> BTreeMap<u32, Access> {
                 .flatten()
                 .filter_map(|v| variables.get(v))
             {
-                // Loading an image gives a handle; it counts where that is used.
+                // Loading an image only gives a handle; its uses count.
                 if (variable.buffer || opcode(i) != LOAD)
                     && let Some(known) = found.get_mut(&variable.binding)
                 {
@@ -115,8 +117,9 @@ pub(super) fn accesses(words: &[u32]) -> BTreeMap<u32, Access> {
     found
 }
 
-/// The module with what it never writes decorated NonWritable, and what it never reads NonReadable: devices without
-/// stores from vertex or fragment stages insist on the first (VUID-RuntimeSpirv-NonWritable), drivers make use of both.
+/// Decorates never written resources NonWritable and never read ones NonReadable. Devices without
+/// stores in vertex or fragment stages require the first (VUID-RuntimeSpirv-NonWritable), and
+/// drivers optimise with both.
 pub(super) fn decorated(words: &[u32]) -> Vec<u32> {
     let (accesses, images) = (accesses(words), storage_images(words));
     let is_decoration = |i: &[u32]| [DECORATE, MEMBER_DECORATE].contains(&opcode(i));
@@ -125,7 +128,7 @@ pub(super) fn decorated(words: &[u32]) -> Vec<u32> {
         .filter_map(|i| i.get(1..3))
         .collect();
     let mut added = Vec::new();
-    // Samplers are never written and take no such decoration.
+    // Samplers are never written and cannot be decorated.
     for (id, variable) in variables(words)
         .into_iter()
         .filter(|(id, v)| v.buffer || images.contains(id))
@@ -181,8 +184,8 @@ fn variables(words: &[u32]) -> BTreeMap<u32, Variable> {
     bound.collect()
 }
 
-/// The members that a module may read of each of its uniform blocks, by binding number; none where it may be all of them:
-/// SPIR-V 1.6, section 3.52.8, OpAccessChain.
+/// The members that may be read of each uniform block, by binding; `None` if all may be (SPIR-V
+/// 1.6, section 3.52.8, OpAccessChain).
 pub(super) fn uniform_members(words: &[u32]) -> BTreeMap<u32, Option<BTreeSet<u32>>> {
     const UNIFORM: u32 = 2;
     const CONSTANT: u32 = 43;
@@ -216,7 +219,7 @@ pub(super) fn uniform_members(words: &[u32]) -> BTreeMap<u32, Option<BTreeSet<u3
             };
             match (members.get_mut(block), member) {
                 (Some(Some(list)), Some(member)) => drop(list.insert(*member)),
-                // Anything else, be it a number that only looks like the block's: it may be all.
+                // Any other use may read all members. It may also be a literal that equals the id.
                 (Some(all), None) => *all = None,
                 _ => {}
             }
@@ -231,9 +234,10 @@ pub(super) fn uniform_members(words: &[u32]) -> BTreeMap<u32, Option<BTreeSet<u3
     instructions(words).filter_map(binding).collect()
 }
 
-/// The images, by binding number, into which every thread of a compute shader stores at its own place: in the first block of its
-/// entry point, which all threads run, at the coordinates of `gl_GlobalInvocationID` (SPIR-V 1.6, section 3.52.10,
-/// OpImageWrite). Others may be covered too, by ways that are not looked for.
+/// The images, by binding, into which every thread of a compute shader stores at its own position.
+/// The store is in the first block of the entry point, which all threads execute, at
+/// `gl_GlobalInvocationID` (SPIR-V 1.6, section 3.52.10, OpImageWrite). Other patterns are not
+/// detected.
 pub(super) fn stored_by_each(words: &[u32]) -> BTreeSet<u32> {
     const ENTRY_POINT: u32 = 15;
     const BUILT_IN: u32 = 11;
@@ -243,7 +247,7 @@ pub(super) fn stored_by_each(words: &[u32]) -> BTreeSet<u32> {
         .find(|i| opcode(i) == ENTRY_POINT)
         .and_then(|i| i.get(2));
     let main = instructions(words).skip_while(|i| opcode(i) != FUNCTION || i.get(2) != entry);
-    // To its first branch, return or kill.
+    // Up to the first branch, return or kill.
     let first_block = main.take_while(|i| !(249..=255).contains(&opcode(i)));
     let place = |i: &[u32]| match i {
         [_, id, BUILT_IN, GLOBAL_INVOCATION_ID] if opcode(i) == DECORATE => Some(*id),
@@ -278,7 +282,7 @@ pub(super) fn images_at(words: &[u32], bindings: &[u32]) -> BTreeSet<u32> {
     bound.map(|(id, _)| id).collect()
 }
 
-/// The variables that are storage images: pointers to an OpTypeImage, which samplers combine into another type.
+/// The storage image variables: pointers to an OpTypeImage; samplers use another type.
 fn storage_images(words: &[u32]) -> BTreeSet<u32> {
     const TYPE_IMAGE: u32 = 25;
     const TYPE_POINTER: u32 = 32;
@@ -297,14 +301,14 @@ fn storage_images(words: &[u32]) -> BTreeSet<u32> {
     images
 }
 
-/// The variables that a pointer or a loaded image may come from.
+/// The variables that a pointer or loaded image may originate from.
 pub(super) type Origins = BTreeMap<u32, BTreeSet<u32>>;
 
-/// Where pointers and images come from.
+/// The origins of all pointers and images.
 pub(super) fn origins(words: &[u32], variables: impl Iterator<Item = u32>) -> Origins {
     let mut origins: Origins = variables.map(|id| (id, BTreeSet::from([id]))).collect();
     let parameters = parameters(words);
-    // A pointer may be handed to a function that stands earlier in the module.
+    // Repeats, because a call may pass a pointer to a function earlier in the module.
     while follow(words, &parameters, &mut origins) {}
     origins
 }
@@ -325,7 +329,7 @@ fn parameters(words: &[u32]) -> BTreeMap<u32, Vec<u32>> {
     parameters
 }
 
-/// Follows pointers and images through one reading of the module; whether anything was learnt.
+/// Propagates origins through the module once; returns whether anything changed.
 fn follow(words: &[u32], parameters: &BTreeMap<u32, Vec<u32>>, origins: &mut Origins) -> bool {
     let mut learnt = false;
     let mut join = |to: u32, from: &[u32]| {
@@ -341,7 +345,8 @@ fn follow(words: &[u32], parameters: &BTreeMap<u32, Vec<u32>>, origins: &mut Ori
     };
     for i in instructions(words) {
         match (opcode(i), i) {
-            // Access chains, copies, texel pointers; a loaded image is as good as its variable.
+            // Access chains, copies and texel pointers; a loaded image has the origin of its
+            // variable.
             (60 | LOAD | 65..=67 | 70 | 83, [_, _, id, base, ..]) => join(*id, &[*base]),
             // OpSelect, OpPhi.
             (169, [_, _, id, _, a, b]) => join(*id, &[*a, *b]),
@@ -361,7 +366,7 @@ fn follow(words: &[u32], parameters: &BTreeMap<u32, Vec<u32>>, origins: &mut Ori
     learnt
 }
 
-/// What an instruction does, by the pointer or image that it does it to.
+/// The accesses of an instruction, by pointer or image id.
 fn touched(i: &[u32]) -> Vec<(u32, Access)> {
     match (opcode(i), i) {
         (LOAD, [_, _, _, pointer, ..]) => vec![(*pointer, READ)],
@@ -375,11 +380,11 @@ fn touched(i: &[u32]) -> Vec<(u32, Access)> {
         (99, [_, image, ..]) => vec![(*image, WRITE)],
         // OpImageQuerySizeLod, OpImageQuerySize, other queries.
         (103..=107, [_, _, _, image, ..]) => vec![(*image, SIZE)],
-        // A function that was not inlined needs its argument, whatever it does to it.
+        // Arguments of a call that was not inlined may be accessed in any way.
         (FUNCTION_CALL, [_, _, _, _, arguments @ ..]) => {
             arguments.iter().map(|id| (*id, SIZE)).collect()
         }
-        // Atomics that change a value and give the old one: integers, flags, float minimum, maximum and sum.
+        // Atomics that return the old value: integers, flags, float minimum, maximum and sum.
         (229..=242 | 318 | 5614 | 5615 | 6035, [_, _, _, pointer, ..]) => vec![(*pointer, BOTH)],
         // OpAtomicFlagClear.
         (319, [_, pointer, ..]) => vec![(*pointer, WRITE)],

@@ -1,4 +1,5 @@
-//! GLSL to SPIR-V through shaderc. Compiled modules are kept on disk by the content of everything that went into them.
+//! GLSL to SPIR-V through shaderc. Compiled modules are cached on disk by the content of all their
+//! inputs.
 
 use super::access::decorated;
 use super::macros::{Grown, check_growth, check_version};
@@ -29,52 +30,54 @@ pub struct Compiled {
     pub stage: Stage,
     pub words: Arc<Vec<u32>>,
     pub interface: Interface,
-    /// All files that went into it, with their text (names relative to the shader folder).
+    /// The text of every included file, by name relative to the shader folder.
     pub texts: Arc<BTreeMap<String, String>>,
 }
 
-/// Kept: with the last one go the tables of built-in functions, and making them takes a hundred times a compile.
+/// Kept alive, because creating the tables of built-in functions takes a hundred times as long as
+/// compiling.
 static COMPILER: LazyLock<Result<shaderc::Compiler, shaderc::Error>> =
     LazyLock::new(shaderc::Compiler::new);
 
-/// The last module of each file (folder, name), in this program: an edit compiles and reads only what it touches.
+/// The last module of each (folder, name) in this process, so that an edit recompiles only affected
+/// shaders.
 static LAST: Mutex<BTreeMap<(PathBuf, String), Compiled>> = Mutex::new(BTreeMap::new());
 
-/// Files that the graph makes, by the name that shaders include them by: `params.glsl`, and a line for each module that
-/// includes the file of its option.
+/// Files generated from the graph, by include name: `params.glsl`, and one line per module that
+/// includes the file of its selected option.
 pub type Generated = BTreeMap<String, String>;
 
-/// The include of a module, which stands for the file of its option.
+/// The include of a module, which expands to the file of its selected option.
 pub fn module_include(name: &str) -> String {
     format!("modules/{name}.glsl")
 }
 
-/// Path of a shader or include in a folder of shaders.
+/// Path of a file in a shader folder.
 pub fn find(folder: &Path, name: &str) -> Option<PathBuf> {
     is_inside(name)
         .then(|| folder.join(name))
         .filter(|path| path.is_file())
 }
 
-/// Whether a name stays inside its folder. Names come from the text of graphs and shaders.
+/// Whether a name stays inside its folder. Names come from untrusted graphs and shaders.
 pub(crate) fn is_inside(name: &str) -> bool {
     Path::new(name)
         .components()
         .all(|c| matches!(c, std::path::Component::Normal(_)))
 }
 
-/// Compiles shaders of one folder, as its files were when it first read each.
+/// Compiles shaders of one folder. Each file is read once.
 pub struct ShaderCompiler {
     folder: PathBuf,
     cache: Option<PathBuf>,
-    /// What was read: most files are included by many.
+    /// Cached files, because most are included by many shaders.
     read: Mutex<HashMap<String, Read>>,
 }
 
-/// A file's text and what it includes, or why it has none; nothing where there is no such file.
+/// A file's text and includes, or its errors; `None` if the file does not exist.
 type Read = Option<Result<Arc<Text>, Vec<Diagnostic>>>;
 
-/// A text, and the names that it includes.
+/// A text and the names that it includes.
 struct Text(String, Vec<String>);
 
 impl Text {
@@ -88,20 +91,20 @@ impl Text {
     }
 }
 
-/// Changes whenever compiled modules of an older program must not be used.
+/// Changed whenever cached modules of an older program become invalid.
 const CACHE_VERSION: &str = "conelab spirv 2";
 /// Shader files larger than this are refused.
 pub(crate) const MAX_BYTES: u64 = 2 << 20;
 
-/// Includes that a shader may have, counted as often as they stand there.
+/// Maximum includes of a shader, counted with repetition.
 const MAX_INCLUDES: usize = 4096;
-/// Begins the message about more.
+/// Start of the message about exceeding [`MAX_INCLUDES`].
 const TOO_MANY: &str = "too many includes";
-/// How deep they may be nested.
+/// Maximum nesting depth of includes.
 const MAX_DEPTH: usize = 32;
 
 impl ShaderCompiler {
-    /// A compiler for `folder`, with compiled modules kept in `cache`.
+    /// A compiler for `folder`; `cache` stores compiled modules.
     pub fn new(folder: &Path, cache: Option<&Path>) -> ShaderCompiler {
         ShaderCompiler {
             folder: folder.to_path_buf(),
@@ -133,7 +136,7 @@ impl ShaderCompiler {
             .cache
             .as_ref()
             .map(|dir| dir.join(format!("{key}.spv")));
-        // A module in the cache that cannot be read is compiled again.
+        // A cached module that cannot be read is recompiled.
         let from_cache = cached.as_deref().and_then(crate::files::read_checked);
         let from_cache = from_cache.and_then(|bytes| read_module(&bytes, source.stage));
         let (words, interface) = match from_cache {
@@ -166,7 +169,7 @@ impl ShaderCompiler {
         Ok(compiled)
     }
 
-    /// The files that a shader is made of: name, text.
+    /// The files of a shader: name, text.
     pub fn texts(
         &self,
         file: &str,
@@ -197,7 +200,7 @@ impl ShaderCompiler {
         };
         texts.insert(name.to_string(), text.0.clone());
         for include in &text.1 {
-            // One that is missing is told by the compiler, with its line.
+            // The compiler reports a missing include with its line.
             if generated.contains_key(include) || self.read(include).is_some() {
                 self.collect(include, generated, texts)?;
             }
@@ -205,7 +208,7 @@ impl ShaderCompiler {
         Ok(())
     }
 
-    /// The text of a file, read once; nothing where there is no such file.
+    /// The text of a file, read once; `None` if it does not exist.
     fn read(&self, name: &str) -> Read {
         let known = || self.read.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(read) = known().get(name) {
@@ -216,8 +219,8 @@ impl ShaderCompiler {
         read
     }
 
-    /// The error of a file that is not in the folder. A name that leads out of it is not opened: graphs of captures come
-    /// from strangers.
+    /// The error of a missing file. Names that lead out of the folder are not opened, because
+    /// captures contain untrusted graphs.
     fn missing(&self, name: &str) -> Result<Arc<Text>, Vec<Diagnostic>> {
         if is_inside(name) {
             return text_of(&self.folder.join(name));
@@ -271,7 +274,7 @@ impl ShaderCompiler {
             shaderc::EnvVersion::Vulkan1_3 as u32,
         );
         options.set_optimization_level(shaderc::OptimizationLevel::Performance);
-        // Keeps the names that resources are bound by.
+        // Keeps the names of resources.
         options.set_generate_debug_info();
         options.set_auto_bind_uniforms(true);
         let (stage, kind) = match source.stage {
@@ -289,10 +292,10 @@ impl ShaderCompiler {
             shaderc::ResourceKind::Buffer,
             shaderc::ResourceKind::StorageBuffer,
         ] {
-            // Stages are compiled apart and share one descriptor set.
+            // Stages are compiled separately and share one descriptor set.
             options.set_binding_base(resource, stage * MAX_BINDINGS as u32);
         }
-        // Files that include others twice grow with a power of their depth.
+        // Files that include others twice grow exponentially with depth.
         let (count, chain) = (Cell::new(0), RefCell::new(Vec::new()));
         options.set_include_callback(move |name, _, _, depth| {
             let mut chain = chain.borrow_mut();
@@ -345,12 +348,12 @@ impl ShaderCompiler {
         }
     }
 
-    /// Names that an include may have.
+    /// Valid include names.
     fn includes(&self) -> Vec<String> {
         let mut names = vec![String::from("params.glsl")];
         let mut folders = vec![PathBuf::new()];
         while let Some(folder) = folders.pop() {
-            // Folders nested deeper are no one's shaders.
+            // Deeper nested folders hold no shaders.
             let Ok(entries) = std::fs::read_dir(self.folder.join(&folder)) else {
                 continue;
             };
@@ -368,7 +371,7 @@ impl ShaderCompiler {
         names
     }
 
-    /// The compiler's text, message by message, with the line each is about.
+    /// Splits the compiler's output into messages with their lines.
     fn messages(
         &self,
         text: &str,
@@ -402,7 +405,7 @@ impl ShaderCompiler {
                 line: number,
                 column: 0,
             };
-            // Some print a whole type.
+            // Some messages print a whole type.
             let told = excerpt(&shortened(message), 400);
             let mut found = match level {
                 "error" => Diagnostic::error(place, told),
@@ -422,7 +425,7 @@ impl ShaderCompiler {
                     members.into_iter().flat_map(|text| params_members(text)),
                 );
             }
-            // Every include up to the first one is told again.
+            // The compiler repeats every include up to the first error.
             let again =
                 message.contains(TOO_MANY) && list.iter().any(|f| f.message.contains(TOO_MANY));
             if !list.contains(&found) && !again {
@@ -457,13 +460,13 @@ fn text_of(path: &Path) -> Result<Arc<Text>, Vec<Diagnostic>> {
     }
 }
 
-/// The member in the compiler's words that a structure has none of that name.
+/// The missing member in the compiler's message about a structure.
 fn missing_member(message: &str) -> Option<&str> {
     let (name, rest) = message.strip_prefix('\'')?.split_once('\'')?;
     rest.contains("no such field").then_some(name)
 }
 
-/// Names of the members of the block of parameters in the generated include.
+/// Member names of the parameter block in the generated include.
 fn params_members(text: &str) -> impl Iterator<Item = &str> {
     let block = text
         .lines()
@@ -473,7 +476,7 @@ fn params_members(text: &str) -> impl Iterator<Item = &str> {
     block.filter_map(|line| line.trim().strip_suffix(';')?.split_whitespace().nth(1))
 }
 
-/// A message without the members of the types that it writes out.
+/// The message without the members of printed types.
 fn shortened(message: &str) -> String {
     let mut out = String::new();
     let mut depth = 0_u32;
@@ -493,7 +496,7 @@ fn shortened(message: &str) -> String {
     out
 }
 
-/// The name in an `#include "name"` line.
+/// The name of an `#include "name"` line.
 fn included(line: &str) -> Option<&str> {
     let rest = line
         .trim_start()
@@ -503,7 +506,7 @@ fn included(line: &str) -> Option<&str> {
     rest.split('"').nth(1)
 }
 
-/// A module of the cache with its interface; `None` for other bytes, on which the reflector may panic.
+/// A cached module with its interface; `None` for invalid bytes, on which the reflector may panic.
 pub fn read_module(bytes: &[u8], stage: Stage) -> Option<(Vec<u32>, Interface)> {
     let words = to_words(bytes)?;
     let interface = caught(|| reflect(&words, stage)).ok()?.ok()?;
@@ -532,7 +535,7 @@ mod tests {
     use rayon::prelude::*;
     use spirq::prelude::*;
 
-    /// The qualifiers of storage buffers and images, by binding number.
+    /// The qualifiers of storage buffers and images by binding.
     fn qualifiers(words: &[u32]) -> BTreeMap<u32, AccessType> {
         let entries = ReflectConfig::new()
             .spv(without_constant_operations(words))
@@ -584,10 +587,10 @@ mod tests {
                 for (binding, qualifier) in &qualifiers {
                     let Access { read, write, size } = found[binding];
                     let agrees = match qualifier {
-                        // A buffer may be there for its length alone.
+                        // A buffer may be used only for its length.
                         AccessType::ReadOnly => !write,
                         AccessType::WriteOnly => !read && (write || size),
-                        // No qualifier says anything.
+                        // Without qualifiers any access is possible.
                         AccessType::ReadWrite => true,
                     };
                     assert!(
@@ -596,7 +599,7 @@ mod tests {
                         found[binding]
                     );
                 }
-                // What was derived says the same of the module as it goes to the device.
+                // The accesses derived from the decorated module must be the same.
                 assert_eq!(accesses(&decorated(&words)), found);
                 for (binding, access) in self::qualifiers(&decorated(&words)) {
                     let Access { read, write, .. } = found[&binding];

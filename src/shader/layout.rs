@@ -1,16 +1,16 @@
-//! How the blocks of buffers lie in memory, as the SPIR-V of a shader says: names, offsets, strides.
+//! Memory layout of buffer blocks from a shader's SPIR-V: names, offsets, strides.
 
 use spirq::prelude::Type;
 use spirq::ty::ScalarType;
 use std::fmt;
 
-/// Kinds of 32-bit numbers, and the rest.
+/// Scalar types of 32 bits, and others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scalar {
     Float,
     Int,
     Uint,
-    /// Of another width, in bits.
+    /// Another width [bits].
     Other(u32),
 }
 
@@ -18,21 +18,21 @@ pub enum Scalar {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Layout {
     Scalar(Scalar),
-    /// 2 to 4 numbers.
+    /// Vector of 2 to 4 scalars.
     Vector(Scalar, u32),
-    /// Columns of so many numbers.
+    /// Column-major matrix.
     Matrix {
         columns: u32,
-        /// Numbers of a column.
+        /// Rows per column.
         rows: u32,
-        /// Bytes from column to column.
+        /// Bytes between columns.
         stride: u32,
     },
-    /// Elements one after another; no count where the buffer's length decides.
+    /// Array; no count if the length depends on the buffer.
     Array {
         of: Box<Layout>,
         count: Option<u32>,
-        /// Bytes from one to the next.
+        /// Bytes between elements.
         stride: u32,
     },
     /// A struct, or the block of a buffer.
@@ -44,23 +44,23 @@ pub enum Layout {
 pub struct Member {
     /// Name in GLSL.
     pub name: String,
-    /// Bytes from the start of the struct.
+    /// Offset in the struct [bytes].
     pub offset: u32,
     pub layout: Layout,
 }
 
-/// A name in a path that is not there.
+/// An unknown name in a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Missing {
     /// The path before it.
     pub of: String,
     pub name: String,
-    /// What there is instead.
+    /// The known names at this place.
     pub known: Vec<String>,
 }
 
 impl Layout {
-    /// Of a reflected type; nothing for one without a layout.
+    /// The layout of a reflected type; `None` without a layout.
     pub(super) fn of(ty: &Type) -> Option<Layout> {
         let narrow = |n: usize| u32::try_from(n).ok();
         Some(match ty {
@@ -90,7 +90,7 @@ impl Layout {
         })
     }
 
-    /// Its members, if it is a struct.
+    /// The members of a struct.
     pub fn members(&self) -> &[Member] {
         match self {
             Layout::Struct(members) => members,
@@ -98,7 +98,7 @@ impl Layout {
         }
     }
 
-    /// (first byte, end) of members of a block by number, in order; none if it lacks one.
+    /// Merged (first byte, end) of members by index; `None` if one is missing.
     pub(super) fn bytes_of(
         &self,
         members: &std::collections::BTreeSet<u32>,
@@ -116,7 +116,7 @@ impl Layout {
             .collect()
     }
 
-    /// Bytes from its start to the end of what has a fixed place: all of it, but for an array without a count at the end.
+    /// Size of the fixed part [bytes]: everything except a runtime array at the end.
     pub fn bytes(&self) -> u32 {
         match self {
             Layout::Scalar(s) => s.bytes(),
@@ -137,7 +137,7 @@ impl Layout {
         }
     }
 
-    /// The array at the end of a block whose length is the buffer's.
+    /// The runtime array at the end of a block, with its offset.
     pub fn endless(&self) -> Option<(&Member, u32)> {
         let last = self.members().last()?;
         match &last.layout {
@@ -150,7 +150,8 @@ impl Layout {
         }
     }
 
-    /// What a path names, and its byte: members by name, components of vectors by x y z w, elements by `[number]`.
+    /// Resolves a path to an offset and layout: members by name, vector components by x y z w,
+    /// elements by `[number]`.
     pub fn find(&self, path: &str) -> Result<(u32, Layout), Missing> {
         let mut at = (0, self.clone());
         let mut walked = String::new();
@@ -195,7 +196,7 @@ impl Layout {
         Ok(at)
     }
 
-    /// Its first 32-bit numbers and their bytes, about as many as asked for; those of an array without a count are none.
+    /// About `most` leading 32-bit scalars with their offsets; runtime arrays are skipped.
     fn words(&self, start: u32, most: usize) -> Vec<(u32, Scalar)> {
         let mut list = Vec::new();
         match self {
@@ -220,7 +221,7 @@ impl Layout {
         list
     }
 
-    /// The members that are single numbers, those of structs in it too, with their bytes.
+    /// All scalar members, including those of nested structs, with their offsets.
     fn scalars(&self, start: u32) -> Vec<(u32, Scalar)> {
         let of = |m: &Member| match &m.layout {
             Layout::Scalar(s) => vec![(start.saturating_add(m.offset), *s)],
@@ -229,8 +230,8 @@ impl Layout {
         self.members().iter().flat_map(of).collect()
     }
 
-    /// Whether `count` `uint`s in a row begin at what a path found: a vector, array or struct of as many, or the first of
-    /// as many members that follow one another.
+    /// Whether `count` consecutive `uint`s begin at a resolved path: a vector, array or struct of
+    /// that size, or the first of that many consecutive members.
     pub fn has_uints(&self, (offset, found): &(u32, Layout), count: u32) -> bool {
         let words = match found {
             Layout::Scalar(_) => self.scalars(0),
@@ -242,7 +243,7 @@ impl Layout {
     }
 }
 
-/// One name further; the names that there are where it is not there.
+/// Resolves one name; on failure returns the known names.
 fn step((offset, layout): &(u32, Layout), name: &str) -> Result<(u32, Layout), Vec<String>> {
     match layout {
         Layout::Struct(members) => match members.iter().find(|m| m.name == name) {

@@ -1,20 +1,20 @@
-//! Bounds the expansion of a shader's macros before the compiler sees them: forty lines `#define B (A+A)`, each with the
-//! name of the line above, expand to a trillion tokens.
+//! Bounds a shader's macro expansion before compilation. Forty lines `#define B (A+A)`, each with
+//! the name of the previous one, expand to a trillion tokens.
 
 use std::collections::BTreeMap;
 
-/// Tokens that the files of one shader may have, macros expanded.
+/// Maximum tokens of a shader's files after macro expansion.
 const MAX_TOKENS: f64 = 4e6;
-/// Why the expansion of a macro that repeats an argument is not bounded.
+/// Reason why a macro that repeats an argument cannot be bounded.
 const WITHOUT_ARGUMENTS: &str =
     "a macro that repeats an argument must be followed by its arguments in brackets";
-/// How deep macros and their arguments may be nested.
+/// Maximum nesting depth of macros and arguments.
 const MAX_DEPTH: usize = 256;
 
-/// Macros that grow too much, by the line that uses them.
+/// Excessive macro expansion, at the line that uses the macro.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Grown {
-    /// Name of the file among the texts.
+    /// Name of the file.
     pub file: String,
     /// Line, from 1.
     pub line: u32,
@@ -22,7 +22,8 @@ pub(super) struct Grown {
     pub message: String,
 }
 
-/// Checks the files of a shader. All definitions count, whatever `#if` says; of several of one name, the largest.
+/// Checks the files of a shader. `#if` is ignored: all definitions count, and of several with one
+/// name the most expensive.
 ///
 /// # Errors
 /// The first line that expands beyond the bound or cannot be bounded.
@@ -42,7 +43,7 @@ pub(super) fn check_growth(texts: &BTreeMap<String, String>) -> Result<(), Grown
     }
     let mut sum = 0.0;
     for (file, lines) in &files {
-        // A call may span several lines, so all lines between two directives are one text.
+        // A call may span several lines, so all lines between two directives form one text.
         for part in lines.chunk_by(|a, b| a.directive().is_none() && b.directive().is_none()) {
             let tokens = match part[0].directive() {
                 Some(
@@ -59,7 +60,7 @@ pub(super) fn check_growth(texts: &BTreeMap<String, String>) -> Result<(), Grown
             if found.is_ok() && sum <= MAX_TOKENS {
                 continue;
             }
-            // The line that goes beyond the bound, as far as lines can be taken one by one.
+            // Narrows the error down to a line, if lines can be expanded separately.
             let mut up_to = before;
             let beyond = part.iter().find(|line| {
                 up_to += macros.top(&line.tokens).unwrap_or(f64::INFINITY);
@@ -84,8 +85,8 @@ pub(super) fn check_growth(texts: &BTreeMap<String, String>) -> Result<(), Grown
     Ok(())
 }
 
-/// Checks that nothing but comments is before `#version`. With a letter there the compiler prints thousands of lines of
-/// its own tables, to standard output.
+/// Checks that only comments precede `#version`. Otherwise the compiler prints thousands of lines
+/// of its own tables to standard output.
 pub(super) fn check_version(text: &str) -> Result<(), (u32, String)> {
     let lines = lines(text);
     let mut before = lines
@@ -119,7 +120,7 @@ impl<'t> Line<'t> {
         (self.tokens.first() == Some(&"#")).then(|| self.tokens.get(1).copied().unwrap_or_default())
     }
 
-    /// The tokens without those that `defined` asks about, which are not expanded.
+    /// The tokens without operands of `defined`, which are not expanded.
     fn without_defined(&self) -> Vec<&'t str> {
         let asked = |i: usize| {
             let before = |n: usize| i.checked_sub(n).map(|i| self.tokens[i]);
@@ -132,7 +133,7 @@ impl<'t> Line<'t> {
     }
 }
 
-/// Tokens by line; comments are left out.
+/// Tokens by line, without comments.
 fn lines(text: &str) -> Vec<Line<'_>> {
     let (bytes, mut at, mut number) = (text.as_bytes(), 0, 1);
     let (mut all, mut line) = (
@@ -190,7 +191,7 @@ fn lines(text: &str) -> Vec<Line<'_>> {
 
 /// A `#define`.
 struct Definition<'t> {
-    /// Names of the parameters; none of a macro that takes no arguments.
+    /// Names of the parameters; `None` for an object-like macro.
     parameters: Option<Vec<&'t str>>,
     body: Vec<&'t str>,
 }
@@ -199,7 +200,7 @@ fn definition<'t>(line: &Line<'t>) -> Option<(&'t str, Definition<'t>)> {
     let [_, _, name, rest @ ..] = line.tokens.as_slice() else {
         return None;
     };
-    // Only a bracket right behind the name begins parameters.
+    // Only a parenthesis directly after the name starts parameters.
     let adjacent = rest
         .first()
         .is_some_and(|t| *t == "(" && t.as_ptr() == name.as_bytes().as_ptr_range().end);
@@ -209,16 +210,16 @@ fn definition<'t>(line: &Line<'t>) -> Option<(&'t str, Definition<'t>)> {
     Some((name, Definition { parameters, body }))
 }
 
-/// More than any bound, and its square is still a number.
+/// Above any bound, and its square is finite.
 const ENDLESS: f64 = 1e30;
 
-/// The cost of an expansion: its own tokens, and the number of times that it repeats each argument.
+/// Cost of an expansion: its own tokens, and the repetitions of each argument.
 #[derive(Clone, Debug, Default)]
 struct Form {
     own: f64,
     repeats: Vec<f64>,
-    /// The expansion may end in the name of a macro with the arguments behind it: the number of times that this macro
-    /// repeats each of them. For a macro itself, the number of times that it repeats its own arguments.
+    /// If the expansion ends in the name of a function-like macro, the repetitions of that macro's
+    /// arguments. For a macro itself, the repetitions of its own arguments.
     call: Option<Vec<f64>>,
 }
 
@@ -236,7 +237,7 @@ struct Macros<'d> {
 }
 
 impl<'d> Macros<'d> {
-    /// Tokens of a text.
+    /// Cost of a text [tokens].
     fn top(&mut self, tokens: &[&'d str]) -> Result<f64, String> {
         let form = self.cost(tokens, &[], 0);
         self.open.clear();
@@ -248,7 +249,7 @@ impl<'d> Macros<'d> {
         }
     }
 
-    /// The cost of a macro: for each argument, and for the rest, that of the definition with most.
+    /// Cost of a macro: the maximum over its definitions, per argument and for the rest.
     fn form(&mut self, name: &'d str, depth: usize) -> Result<Form, String> {
         if let Some(form) = self.forms.get(name) {
             return Ok(form.clone());
@@ -283,7 +284,7 @@ impl<'d> Macros<'d> {
             let own = match &definition.parameters {
                 Some(_) if form.ends_in_repeats() => return Err(WITHOUT_ARGUMENTS.into()),
                 Some(_) => Some(&form.repeats),
-                // Another name of a macro that takes arguments.
+                // An alias of a function-like macro.
                 None => form.call.as_ref(),
             };
             if let Some(own) = own {
@@ -294,7 +295,7 @@ impl<'d> Macros<'d> {
                     .for_each(|(most, one)| *most = most.max(*one));
                 most.call = Some(repeats.clone());
             }
-            // The macro itself is read, even if nothing stands for it.
+            // The macro's name is a token even if its expansion is empty.
             most.own = most.own.max(1.0 + form.own);
         }
         self.open.pop();
@@ -302,7 +303,7 @@ impl<'d> Macros<'d> {
         Ok(most)
     }
 
-    /// The cost of tokens in which `parameters` stand for arguments.
+    /// Cost of tokens in which `parameters` are replaced by arguments.
     fn cost(
         &mut self,
         tokens: &[&'d str],
@@ -339,7 +340,7 @@ impl<'d> Macros<'d> {
                 None
             };
             let Some((arguments, length)) = arguments else {
-                // Arguments that come from other macros are not seen here.
+                // Arguments passed by other macros are not visible here.
                 if form.ends_in_repeats() && at < tokens.len() {
                     return Err(WITHOUT_ARGUMENTS.into());
                 }
@@ -352,7 +353,7 @@ impl<'d> Macros<'d> {
                 if inner.ends_in_repeats() {
                     return Err(WITHOUT_ARGUMENTS.into());
                 }
-                // An argument is expanded once before it takes the places of its parameter.
+                // An argument is expanded once before it replaces its parameter.
                 let times = repeats.get(i).copied().unwrap_or(0.0) + 1.0;
                 sum.own = (sum.own + times * inner.own).min(ENDLESS);
                 for (all, one) in sum.repeats.iter_mut().zip(&inner.repeats) {
@@ -364,7 +365,8 @@ impl<'d> Macros<'d> {
     }
 }
 
-/// The arguments of a call that begins with its bracket, and its tokens; `None` without the closing bracket.
+/// The arguments of a call that starts with its parenthesis, and its tokens; `None` without a
+/// closing one.
 fn arguments<'s, 'd>(tokens: &'s [&'d str]) -> Option<(Vec<&'s [&'d str]>, usize)> {
     let (mut list, mut begin, mut depth) = (Vec::new(), 1, 0u32);
     for (i, token) in tokens.iter().enumerate() {
@@ -434,7 +436,7 @@ mod tests {
             42,
             "'A39'",
         );
-        // Neither does the compiler see them where nothing remains, nor are they harmless there.
+        // The compiler does not see them where nothing remains, nor are they harmless there.
         refused(
             &chain(
                 "#define A0\n",

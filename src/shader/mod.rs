@@ -1,4 +1,4 @@
-//! GLSL to SPIR-V at run time, with includes, a cache on disk, and reflection by name.
+//! Runtime compilation of GLSL to SPIR-V with includes, a disk cache, and reflection by name.
 
 mod access;
 mod compile;

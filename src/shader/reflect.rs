@@ -1,4 +1,4 @@
-//! What a compiled shader binds, by name.
+//! The named bindings of a compiled shader.
 
 use super::access::{Access, accesses, stored_by_each, uniform_members};
 use super::layout::Layout;
@@ -10,7 +10,7 @@ use spirq::spirv::{Dim, ExecutionMode as Mode, ImageFormat};
 use spirq::ty::ScalarType;
 use std::sync::Arc;
 
-/// How many dimensions an image has for the shader.
+/// Dimensionality of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// `2D`
@@ -22,7 +22,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// GLSL's suffix.
+    /// GLSL's type suffix.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Shape::D2 => "2D",
@@ -32,21 +32,21 @@ impl Shape {
     }
 }
 
-/// What a name is bound to.
+/// Resource type of a binding.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Resource {
     /// `uniform` block.
     Uniform,
     /// `buffer` block.
     Buffer {
-        /// Read.
+        /// Whether it is read.
         read: bool,
-        /// Written.
+        /// Whether it is written.
         write: bool,
     },
     /// `sampler*`
     Sampled {
-        /// Dimensions.
+        /// Dimensionality.
         shape: Shape,
         /// `*Shadow`
         compare: bool,
@@ -55,34 +55,35 @@ pub enum Resource {
     },
     /// `image*`
     Storage {
-        /// Dimensions.
+        /// Dimensionality.
         shape: Shape,
-        /// The format qualifier as graphs name it; none for write-only images without.
+        /// The format qualifier with its graph name; `None` for write-only images without one.
         format: Option<&'static str>,
-        /// Read.
+        /// Whether it is read.
         read: bool,
-        /// Written.
+        /// Whether it is written.
         write: bool,
-        /// Asked for its size.
+        /// Whether its size is queried.
         sized: bool,
     },
 }
 
-/// One binding of a shader.
+/// A binding of a shader.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Binding {
     /// Name in GLSL.
     pub name: String,
-    /// Number given by the compiler.
+    /// Binding number.
     pub binding: u32,
     pub resource: Resource,
-    /// How the block of a buffer or uniform lies in memory.
+    /// Memory layout of a buffer or uniform block.
     pub layout: Option<Arc<Layout>>,
-    /// Of a uniform block, the bytes that may be read: (first, end) of members, in order; none where it may be all of it.
+    /// The bytes of a uniform block that may be read, as sorted (first, end) ranges; `None` if all
+    /// may be.
     pub reads: Option<Vec<(u32, u32)>>,
 }
 
-/// What one shader stage touches.
+/// The interface of one shader stage.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Interface {
     pub bindings: Vec<Binding>,
@@ -92,7 +93,8 @@ pub struct Interface {
     pub push: bool,
     /// Workgroup size of a compute shader.
     pub local_size: [u32; 3],
-    /// Bindings of images into which every thread of a compute shader stores, at the place of its number.
+    /// Bindings of images into which every thread of a compute shader stores at its global
+    /// invocation id.
     pub covers: Vec<u32>,
     /// Locations a fragment shader writes.
     pub outputs: Vec<u32>,
@@ -100,18 +102,19 @@ pub struct Interface {
     pub capabilities: Vec<u32>,
 }
 
-/// Most resources of one stage; stages get neighbouring ranges of binding numbers.
+/// Maximum resources per stage; stages use consecutive ranges of binding numbers.
 pub const MAX_BINDINGS: usize = 48;
 
-/// Reads the interface of a module.
+/// Reflects the interface of a module.
 ///
 /// # Errors
-/// What the module has that conelab cannot bind.
+/// Unsupported resource types.
 pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, String> {
     check_sizes(words, &[]).map_err(|e| e.to_string())?;
     let entries = ReflectConfig::new()
         .spv(without_constant_operations(words))
-        // All variables: the optimiser has removed unused ones, and the reflector overlooks lengths of arrays.
+        // All variables: the optimiser has removed unused ones, and the reflector misses array
+        // lengths.
         .ref_all_rscs(true)
         .reflect()
         .map_err(|e| format!("reflection failed: {e}"))?;
@@ -202,8 +205,8 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
     Ok(interface)
 }
 
-/// The module with every OpSpecConstantOp made a null constant (SPIR-V 1.6, section 3.52.7): the reflector does not know
-/// all of the operations, and no interface depends on their values.
+/// Replaces every OpSpecConstantOp by a null constant (SPIR-V 1.6, section 3.52.7). The reflector
+/// does not support all operations, and no interface depends on their values.
 pub(super) fn without_constant_operations(words: &[u32]) -> Vec<u32> {
     const OP_CONSTANT_NULL: u32 = 46;
     const OP_SPEC_CONSTANT_OP: u32 = 52;
@@ -273,7 +276,7 @@ fn shape(dim: Dim, array: bool) -> Option<Shape> {
     }
 }
 
-/// The graph's name of a storage format; `Some(None)` when the shader gives none.
+/// The graph name of a storage format; `Some(None)` if the shader declares none.
 fn format(format: ImageFormat) -> Option<Option<&'static str>> {
     Some(Some(match format {
         ImageFormat::Unknown => return Some(None),

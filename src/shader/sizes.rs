@@ -1,16 +1,16 @@
-//! Sizes of a shader's own variables and values. A driver allocates whatever a module asks for: one array of a billion
-//! numbers takes all memory of the machine.
+//! Size limits for a shader's variables and values. Drivers allocate whatever a module declares, so
+//! an array of a billion numbers would use all memory.
 
 use super::strip::{instructions, opcode};
 use std::collections::BTreeMap;
 
-/// Bytes that all variables of one stage may take together, without buffers; also of one value.
+/// Maximum bytes of all variables of a stage without buffers, and of one value.
 pub const MAX_BYTES: u64 = 1 << 20;
 
-/// Variables that are too large.
+/// Variables above the limit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TooLarge {
-    /// The largest variable; empty if it has no name.
+    /// The largest variable; empty if unnamed.
     pub name: String,
     /// Bytes of all variables, or of one value.
     pub bytes: u64,
@@ -39,10 +39,11 @@ const CONSTANT: u32 = 43;
 const SPEC_CONSTANT: u32 = 50;
 const SPEC_CONSTANT_OP: u32 = 52;
 const VARIABLE: u32 = 59;
-/// Storage classes of memory that each invocation, workgroup or vertex has: Input, Output, Workgroup, Private, Function.
+/// Storage classes with memory per invocation, workgroup or vertex: Input, Output, Workgroup,
+/// Private, Function.
 const OWN: [u32; 5] = [1, 3, 4, 6, 7];
-/// Instructions with a result of the type in their first operand: undefined, constants, function, parameter,
-/// call, load, composites, copies, select, phi.
+/// Instructions whose first operand is the type of their result: undefined, constants, function,
+/// parameter, call, load, composites, copies, select, phi.
 const VALUES: [u32; 15] = [
     1,
     44,
@@ -61,10 +62,10 @@ const VALUES: [u32; 15] = [
     SPEC_CONSTANT_OP,
 ];
 
-/// Checks a module. `constants` are the values of specialisation constants by id; others have their defaults.
+/// Checks a module. `constants` overrides specialisation constants by id.
 ///
 /// # Errors
-/// Variables of more than [`MAX_BYTES`] bytes together, or one value of as many.
+/// Variables above [`MAX_BYTES`] in total, or one value above it.
 pub fn check_sizes(words: &[u32], constants: &[(u32, u32)]) -> Result<(), TooLarge> {
     let (numbers, mut sizes) = (numbers(words, constants), Sizes::default());
     let (mut sum, mut largest) = (0u64, (0, 0));
@@ -95,7 +96,7 @@ pub fn check_sizes(words: &[u32], constants: &[(u32, u32)]) -> Result<(), TooLar
     }
 }
 
-/// Bytes of types by id, and what pointers point to.
+/// Sizes of types by id [bytes], and pointee types.
 #[derive(Default)]
 struct Sizes {
     bytes: BTreeMap<u32, u64>,
@@ -107,7 +108,7 @@ impl Sizes {
         self.bytes.get(&ty).copied().unwrap_or(0)
     }
 
-    /// Notes a type: SPIR-V 1.6, section 3.52.6.
+    /// Records a type: SPIR-V 1.6, section 3.52.6.
     fn declare(&mut self, i: &[u32], numbers: &BTreeMap<u32, u64>) {
         let (id, bytes) = match (opcode(i), i) {
             // OpTypeBool.
@@ -139,7 +140,7 @@ impl Sizes {
     }
 }
 
-/// Values of whole constants by id.
+/// Values of integer constants by id.
 fn numbers(words: &[u32], constants: &[(u32, u32)]) -> BTreeMap<u32, u64> {
     const DECORATE: u32 = 71;
     const SPEC_ID: u32 = 1;
@@ -177,11 +178,11 @@ fn numbers(words: &[u32], constants: &[(u32, u32)]) -> BTreeMap<u32, u64> {
     known
 }
 
-/// The result of an operation on constants, for those that lengths of arrays are made of; never too small.
+/// Upper bound of an operation on constants, for operations that array lengths use.
 fn computed(op: u32, operands: &[u64]) -> Option<u64> {
     match (op, operands) {
         (128, [a, b]) => Some(a.saturating_add(*b)),
-        // A difference below zero is a number of 32 bits.
+        // A negative difference wraps to 32 bits.
         (130, [a, b]) => Some(a.checked_sub(*b).unwrap_or(u64::from(u32::MAX))),
         (132, [a, b]) => Some(a.saturating_mul(*b)),
         (134 | 135, [a, b]) => a.checked_div(*b),

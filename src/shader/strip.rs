@@ -1,4 +1,4 @@
-//! Takes outputs that nobody needs out of a shader, so that the driver drops the work behind them too.
+//! Removes unused outputs from a shader, so that the driver eliminates the work behind them.
 
 use super::access::{DECORATE, LOAD, VARIABLE, accesses, images_at, origins};
 use std::collections::BTreeSet;
@@ -6,10 +6,10 @@ use std::collections::BTreeSet;
 /// Words before the first instruction of a module.
 pub(super) const HEADER: usize = 5;
 
-/// The module with the outputs at these locations made private variables.
+/// Turns the outputs at these locations into private variables.
 ///
-/// SPIR-V 1.6: sections 2.16 (interfaces list all global variables since 1.4, so the entry point stays as it is) and 3.7
-/// (storage classes).
+/// SPIR-V 1.6: sections 2.16 (interfaces list all global variables since 1.4, so the entry point is
+/// unchanged) and 3.7 (storage classes).
 pub fn strip_outputs(words: &[u32], locations: &[u32]) -> Vec<u32> {
     const TYPE_POINTER: u32 = 32;
     const ACCESS_CHAINS: [u32; 2] = [65, 66];
@@ -70,8 +70,8 @@ pub fn strip_outputs(words: &[u32], locations: &[u32]) -> Vec<u32> {
     out
 }
 
-/// The module without its stores to the storage images at these binding numbers, which it never reads, and without those
-/// images; one that it asks for its size stays.
+/// Removes write-only storage images at these bindings with their stores. Images whose size is
+/// queried stay.
 ///
 /// SPIR-V 1.6, sections 2.16 (the entry point lists all global variables) and 3.52.10 (images).
 pub fn strip_images(words: &[u32], bindings: &[u32]) -> Vec<u32> {
@@ -94,11 +94,11 @@ pub fn strip_images(words: &[u32], bindings: &[u32]) -> Vec<u32> {
     for i in instructions(words) {
         match (opcode(i), i) {
             (IMAGE_WRITE, [_, image, ..]) if comes_from(image, &stored) => {}
-            // Handles of an image that is only written have no other use.
+            // Handles of a write-only image have no other use.
             (LOAD | COPY_OBJECT | VARIABLE, [_, _, id, ..]) if comes_from(id, &gone) => {}
             (NAME | DECORATE, [_, id, ..]) if comes_from(id, &gone) => {}
             (ENTRY_POINT, [_, model, function, rest @ ..]) => {
-                // The name is a text that ends in a zero byte; the variables follow.
+                // The name is zero-terminated text; the variables follow.
                 let name = rest
                     .iter()
                     .position(|w| w.to_le_bytes().contains(&0))
@@ -120,7 +120,7 @@ pub fn strip_images(words: &[u32], bindings: &[u32]) -> Vec<u32> {
     out
 }
 
-/// Number of an instruction's operation.
+/// Opcode of an instruction.
 pub(super) fn opcode(instruction: &[u32]) -> u32 {
     instruction.first().map_or(0, |w| w & 0xffff)
 }

@@ -1,25 +1,26 @@
-//! Recording and submitting, with timestamps.
+//! Command recording and submission, with timestamps.
 
 use super::{Buffer, DescriptorSet, Gpu, Image, Pipeline, Result, View, VulkanError, vk};
 use std::ffi::CString;
 use std::sync::Arc;
 
-/// A command buffer being recorded. Its methods are Vulkan's commands; callers order them by barriers.
+/// A command buffer in the recording state. Methods map to Vulkan commands; callers insert the
+/// barriers.
 pub struct Commands<'a> {
     gpu: &'a Gpu,
     pub(super) handle: vk::CommandBuffer,
     queries: Option<(vk::QueryPool, u32)>,
 }
 
-/// A view with its clear value; `None` where a location is not written.
+/// A view with its clear value (`None`: load); `None` for a location that is not written.
 pub type ColorAttachment<'a> = Option<(&'a View, Option<[f32; 4]>)>;
 
-/// One frame in flight: its command buffer, fence and timestamps.
+/// One frame in flight: command buffer, fence and timestamps.
 pub struct FrameSlot {
     gpu: Arc<Gpu>,
     pool: vk::CommandPool,
     buffer: vk::CommandBuffer,
-    /// The commands behind a recording ([`FrameSlot::submit_again`]).
+    /// The command buffer of the last recording ([`FrameSlot::submit_again`]).
     last: (vk::CommandPool, vk::CommandBuffer),
     fence: vk::Fence,
     queries: vk::QueryPool,
@@ -29,7 +30,7 @@ pub struct FrameSlot {
 }
 
 impl FrameSlot {
-    /// A slot with room for so many timestamps.
+    /// A slot with room for this number of timestamps.
     pub fn new(gpu: &Arc<Gpu>, timestamps: u32) -> Result<FrameSlot> {
         let mut slot = FrameSlot {
             gpu: gpu.clone(),
@@ -94,7 +95,7 @@ impl FrameSlot {
         }
     }
 
-    /// Records and submits a frame, after the one that was submitted from this slot has finished.
+    /// Records and submits a frame, after the previous one of this slot has finished.
     pub fn submit(&mut self, record: impl FnOnce(&mut Commands<'_>)) -> Result<()> {
         self.submit_between(None, record)
     }
@@ -110,8 +111,7 @@ impl FrameSlot {
         self.send(&[self.buffer], semaphores)
     }
 
-    /// Submits what `first` records, behind it commands that were recorded before for this slot, and then what `last`
-    /// records.
+    /// Submits the commands of `first`, then a recording of this slot, then the commands of `last`.
     pub fn submit_again(
         &mut self,
         recording: &Recording,
@@ -131,7 +131,7 @@ impl FrameSlot {
         self.send(&[self.buffer, recording.buffer, self.last.1], None)
     }
 
-    /// Records a buffer anew, the only one of its pool; the number of its timestamps.
+    /// Re-records the only buffer of a pool and returns the number of timestamps.
     fn record(
         &self,
         pool: vk::CommandPool,
@@ -202,7 +202,7 @@ impl FrameSlot {
     }
 }
 
-/// Commands that are recorded once for a slot and submitted many times from it. They end before their slot does.
+/// Commands recorded once for a slot and submitted many times. Must be dropped before its slot.
 pub struct Recording {
     gpu: Arc<Gpu>,
     pool: vk::CommandPool,
@@ -230,7 +230,7 @@ impl Drop for Recording {
         if self.gpu.is_hung() {
             return;
         }
-        // SAFETY: who holds a recording drops it when the slot's last frame has finished.
+        // SAFETY: the owner drops a recording after the slot's last frame has finished.
         unsafe { self.gpu.device.destroy_command_pool(self.pool, None) };
     }
 }
@@ -239,7 +239,7 @@ impl Drop for Recording {
 fn command_buffer(gpu: &Gpu) -> Result<(vk::CommandPool, vk::CommandBuffer)> {
     let at = || VulkanError::at("create a command buffer");
     let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.family);
-    // SAFETY: plain creations; the pool is destroyed by who asked for it, or here.
+    // SAFETY: plain creations; the caller destroys the pool, or it is destroyed here on failure.
     unsafe {
         let pool = gpu.device.create_command_pool(&info, None).map_err(at())?;
         let info = vk::CommandBufferAllocateInfo::default()
@@ -258,7 +258,7 @@ fn command_buffer(gpu: &Gpu) -> Result<(vk::CommandPool, vk::CommandBuffer)> {
 impl Drop for FrameSlot {
     fn drop(&mut self) {
         let d = &self.gpu.device;
-        // SAFETY: what was submitted is waited for before it is destroyed.
+        // SAFETY: submitted work is waited for before destruction.
         unsafe {
             if self.pending {
                 let _ = self.gpu.wait_for(self.fence);
@@ -289,7 +289,7 @@ impl Commands<'_> {
         Ok(())
     }
 
-    /// Writes the next timestamp, after everything before it.
+    /// Writes the next timestamp after all previous commands.
     pub fn timestamp(&mut self) {
         if let Some((pool, next)) = &mut self.queries {
             unsafe {
@@ -322,7 +322,7 @@ impl Commands<'_> {
         }
     }
 
-    /// A barrier over images (with the image each is for) and memory.
+    /// A barrier over images (with the image of each barrier) and memory.
     pub fn barrier(
         &mut self,
         memory: Option<vk::MemoryBarrier2<'static>>,
@@ -343,7 +343,7 @@ impl Commands<'_> {
         self.gpu.family
     }
 
-    /// Passes a whole buffer from one queue family to another: (stage, access) before and after.
+    /// Transfers ownership of a buffer between queue families; (stage, access) before and after.
     pub(super) fn pass_on(
         &mut self,
         buffer: &Buffer,
@@ -364,7 +364,7 @@ impl Commands<'_> {
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.handle, &info) };
     }
 
-    /// Everything before is visible to everything after, and to the host once the fence has been waited for.
+    /// Makes all earlier writes visible to all later commands, and to the host after the fence.
     pub fn full_barrier(&mut self) {
         let all = vk::PipelineStageFlags2::ALL_COMMANDS;
         let write = vk::AccessFlags2::MEMORY_WRITE;
@@ -382,7 +382,7 @@ impl Commands<'_> {
         );
     }
 
-    /// Moves a whole image from one layout to another, after everything and before everything.
+    /// Transitions a whole image, ordered after and before all other commands.
     pub fn transition(&mut self, image: &Image, from: vk::ImageLayout, to: vk::ImageLayout) {
         let all = vk::PipelineStageFlags2::ALL_COMMANDS;
         let barrier = vk::ImageMemoryBarrier2::default()
@@ -396,7 +396,7 @@ impl Commands<'_> {
         self.barrier(None, &[(image, barrier)]);
     }
 
-    /// Binds a pipeline and its set.
+    /// Binds a pipeline and its descriptor set.
     pub fn bind(&mut self, pipeline: &Pipeline, set: Option<DescriptorSet>) {
         let d = &self.gpu.device;
         unsafe {
@@ -427,7 +427,7 @@ impl Commands<'_> {
         };
     }
 
-    /// Runs a compute grid.
+    /// Dispatches workgroups.
     pub fn dispatch(&mut self, groups: [u32; 3]) {
         unsafe {
             self.gpu
@@ -436,7 +436,7 @@ impl Commands<'_> {
         };
     }
 
-    /// Runs a compute grid whose size is in a buffer.
+    /// Dispatches workgroups with a count from a buffer.
     pub fn dispatch_indirect(&mut self, buffer: &Buffer, offset: u64) {
         unsafe {
             self.gpu
@@ -445,7 +445,7 @@ impl Commands<'_> {
         };
     }
 
-    /// Starts rendering to attachments (a `None` colour is not written) over an area.
+    /// Starts rendering to attachments over an area; `None` colours are not written.
     pub fn begin_rendering(
         &mut self,
         size: [u32; 2],
@@ -535,7 +535,7 @@ impl Commands<'_> {
         };
     }
 
-    /// Draws with counts from a buffer.
+    /// Draws with parameters from a buffer.
     pub fn draw_indirect(&mut self, buffer: &Buffer, offset: u64) {
         unsafe {
             self.gpu
@@ -556,7 +556,7 @@ impl Commands<'_> {
         };
     }
 
-    /// Draws indexed, (index count, first index, first instance).
+    /// An indexed draw: index count, first index, first instance.
     pub fn draw_indexed(&mut self, count: u32, first: u32, instance: u32) {
         unsafe {
             self.gpu
@@ -565,7 +565,7 @@ impl Commands<'_> {
         };
     }
 
-    /// Draws `count` indexed draws (20 bytes each) from a buffer.
+    /// Draws `count` indexed indirect commands of 20 bytes each.
     pub fn draw_indexed_indirect(&mut self, buffer: &Buffer, offset: u64, count: u32) {
         unsafe {
             self.gpu
@@ -574,7 +574,7 @@ impl Commands<'_> {
         };
     }
 
-    /// Writes bytes (a multiple of 4) into a buffer from an offset on; large data goes in pieces of 64 KiB.
+    /// Writes bytes (a multiple of 4) at an offset; large data is split into 64 KiB.
     pub fn update(&mut self, buffer: &Buffer, at: u64, bytes: &[u8]) {
         for (offset, part) in (at..).step_by(65536).zip(bytes.chunks(65536)) {
             unsafe {
@@ -623,7 +623,7 @@ impl Commands<'_> {
         };
     }
 
-    /// Copies a buffer's first bytes.
+    /// Copies the first bytes of a buffer.
     pub fn copy_buffer(&mut self, from: &Buffer, to: &Buffer, bytes: u64) {
         let region = [vk::BufferCopy::default().size(bytes)];
         unsafe {
@@ -633,7 +633,7 @@ impl Commands<'_> {
         };
     }
 
-    /// Copies all mips of an image into one of the same size.
+    /// Copies all mips to an image of the same size.
     pub fn copy_image(
         &mut self,
         from: &Image,
@@ -667,7 +667,7 @@ impl Commands<'_> {
         }
     }
 
-    /// Copies one mip and layer of an image, or a (first texel, extent) box of it, into a buffer, tightly packed.
+    /// Copies one mip and layer, or a box (first texel, extent) of it, to a buffer, tightly packed.
     pub fn read_image(
         &mut self,
         image: &Image,
@@ -702,7 +702,7 @@ impl Commands<'_> {
         };
     }
 
-    /// Fills an image with new content, and leaves it ready to be sampled by fragment shaders.
+    /// Replaces the content of an image and prepares it for sampling in fragment shaders.
     pub(super) fn refill(&mut self, image: &Image, from: &Buffer) {
         let [width, height, depth] = image.mip_extent(0);
         let region = vk::BufferImageCopy::default()
@@ -715,7 +715,7 @@ impl Commands<'_> {
         self.fill_image(image, from, &[region]);
     }
 
-    /// Moves a window's image or one like it between layouts around rendering.
+    /// Transitions a presentable image around rendering.
     pub(super) fn attach(&mut self, image: vk::Image, from: vk::ImageLayout, to: vk::ImageLayout) {
         let all = vk::PipelineStageFlags2::ALL_COMMANDS;
         let barrier = [vk::ImageMemoryBarrier2::default()

@@ -5,7 +5,7 @@ use std::ffi::{CStr, c_void};
 use std::io::Write;
 use std::sync::Mutex;
 
-/// The messages so far. Boxed by its owner so that the callback's pointer to it stays valid.
+/// The messages so far. The owner boxes it, so that the callback's pointer stays valid.
 #[derive(Default)]
 pub(super) struct Messages(pub(super) Mutex<Vec<String>>);
 
@@ -31,7 +31,7 @@ pub(super) unsafe extern "system" fn on_message(
         };
         (text, &*user.cast::<Messages>())
     };
-    // The loader itself warns of drivers it cannot open, which is no fault of this program.
+    // The loader warns about drivers that it cannot open; that is not an error of this program.
     if !text.starts_with("loader") && !text.contains("terminator_CreateInstance") {
         let level = if severity.contains(vk::DebugUtilsMessageSeverityFlagsEXT::ERROR) {
             "error"
@@ -47,7 +47,7 @@ pub(super) unsafe extern "system" fn on_message(
     vk::FALSE
 }
 
-/// How the messenger is created: warnings and errors, all kinds.
+/// Messenger settings: warnings and errors of all types.
 pub(super) fn messenger_info(messages: &Messages) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
     vk::DebugUtilsMessengerCreateInfoEXT::default()
         .message_severity(
@@ -63,7 +63,7 @@ pub(super) fn messenger_info(messages: &Messages) -> vk::DebugUtilsMessengerCrea
         .user_data(std::ptr::from_ref(messages).cast_mut().cast())
 }
 
-/// Object names and labels for debuggers; absent where the extension is.
+/// Object names and labels for debuggers; requires VK_EXT_debug_utils.
 pub(super) struct Names {
     pub(super) device: ext::debug_utils::Device,
 }

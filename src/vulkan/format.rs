@@ -1,11 +1,11 @@
-//! Texel formats by the names that graphs and GLSL use.
+//! Texel formats with the names used in graphs and GLSL.
 
 use ash::vk;
 
-/// What the channels of a format hold.
+/// Numeric type of the channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channels {
-    /// Floating point or normalised: read as `float` by shaders.
+    /// Floating point or normalised: `float` in shaders.
     Float,
     Uint,
     Int,
@@ -15,14 +15,14 @@ pub enum Channels {
 /// One row of the format table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Format {
-    /// Name in graphs and, where it is a storage format, in GLSL.
+    /// Name in graphs; for storage formats also in GLSL.
     pub name: &'static str,
     pub vk: vk::Format,
-    /// Bytes a texel.
+    /// Bytes per texel.
     pub bytes: u32,
     /// Number of channels.
     pub count: u32,
-    /// What the channels hold.
+    /// Numeric type of the channels.
     pub channels: Channels,
 }
 
@@ -77,7 +77,7 @@ pub const FORMATS: &[Format] = &[
 ];
 
 impl Format {
-    /// The format of that name.
+    /// The format with this name.
     pub fn named(name: &str) -> Option<Format> {
         FORMATS.iter().find(|f| f.name == name).copied()
     }
@@ -91,7 +91,7 @@ impl Format {
         self.channels == Depth
     }
 
-    /// The part of an image that it addresses.
+    /// The image aspect of the format.
     pub fn aspect(&self) -> vk::ImageAspectFlags {
         if self.is_depth() {
             vk::ImageAspectFlags::DEPTH

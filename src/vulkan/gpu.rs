@@ -10,34 +10,35 @@ use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 use std::time::{Duration, Instant};
 
-/// How to open a device.
+/// Options for opening a device.
 #[derive(Clone, Debug, Default)]
 pub struct GpuOptions {
-    /// Part of the device's name, or its number in `conelab devices`; the fastest kind of device when absent.
+    /// Part of the device's name, or its number in `conelab devices`. Default: the fastest kind of
+    /// device.
     pub device: Option<String>,
-    /// Turn on the validation layer with synchronization validation.
+    /// Enables the validation layer with synchronization validation.
     pub validation: bool,
     /// Folder for the pipeline cache; none when absent.
     pub cache: Option<PathBuf>,
-    /// How long a frame may take before the device counts as hung; a software device has ten times as long. Without end
-    /// when absent.
+    /// Time limit of a frame before the device counts as hung; ten times longer on software
+    /// devices. Default: none.
     pub patience: Option<Duration>,
-    /// Faults to come, for tests.
+    /// Injected faults, for tests.
     pub faults: Option<Arc<Faults>>,
 }
 
-/// Faults that a test puts into the next wait for a device: what programs see of a driver's reset and of a shader that never
-/// ends, on devices that have neither.
+/// Faults that a test injects into the next wait for a device. They imitate a driver reset and a
+/// shader that never ends, on devices that have neither.
 #[derive(Debug, Default)]
 pub struct Faults(AtomicU8);
 
 impl Faults {
-    /// The next wait says that the device was lost.
+    /// The next wait reports a lost device.
     pub fn lose(&self) {
         self.0.store(1, Ordering::Relaxed);
     }
 
-    /// The next wait is for a fence that nothing signals.
+    /// The next wait uses a fence that is never signalled.
     pub fn hang(&self) {
         self.0.store(2, Ordering::Relaxed);
     }
@@ -48,10 +49,10 @@ impl Faults {
     }
 }
 
-/// How long a wait for the fence of [`Faults::hang`] takes.
+/// Duration of a wait after [`Faults::hang`].
 const SHORT: Duration = Duration::from_millis(50);
 
-/// Optional abilities, asked for only by the switches that need them.
+/// Optional device features, enabled only by the switches that need them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Features {
     /// `VK_EXT_conservative_rasterization`, overestimating.
@@ -69,49 +70,50 @@ pub struct Features {
     /// BC1 to BC7 textures.
     pub(crate) bc: bool,
     pub(crate) anisotropy: bool,
-    /// Storage images may be written without a format in the shader.
+    /// Storage images can be written without a format in the shader.
     pub write_without_format: bool,
-    /// Several draws from one buffer in one call.
+    /// Several indirect draws in one call.
     pub(crate) multi_draw_indirect: bool,
-    /// Attachments of one pass may blend differently.
+    /// Attachments of one pass can blend differently.
     pub(crate) independent_blend: bool,
-    /// Vertex numbers above 2^24.
+    /// Vertex indices above 2^24.
     pub(crate) full_index: bool,
-    /// 64-bit integers in shaders, and atomics on those in buffers.
+    /// 64-bit integers in shaders, and atomics on them in buffers.
     pub(crate) int64_atomics: bool,
-    /// Buffers can be shared with another device of the same physical one.
+    /// Buffers can be shared with another device of the same physical device.
     pub(crate) shares_memory: bool,
-    /// It does less than Vulkan asks, and says what: MoltenVK. Such devices open with VK_KHR_portability_subset alone.
+    /// Non-conformant implementation with VK_KHR_portability_subset (MoltenVK).
     pub(crate) portability: bool,
 }
 
-/// What a device is.
+/// Properties of a device.
 #[derive(Clone, Debug)]
 pub struct DeviceInfo {
     /// Device name as the driver gives it.
     pub name: String,
-    /// Driver name and version text.
+    /// Driver name and version.
     pub driver: String,
-    /// Vulkan version of the device.
+    /// Supported Vulkan version.
     pub api: String,
-    /// Kind: discrete, integrated, virtual, cpu, other.
+    /// discrete, integrated, virtual, cpu or other.
     pub kind: &'static str,
-    /// Nanoseconds of one timestamp tick; 0 when the queue has no timestamps.
+    /// Nanoseconds per timestamp tick; 0 if the queue has no timestamps.
     pub timestamp_ns: f64,
-    /// Bits of a tick; those above are not counted, so that the count starts over.
+    /// Valid bits of a timestamp; the counter wraps above them.
     pub(crate) timestamp_mask: u64,
     pub(crate) limits: vk::PhysicalDeviceLimits,
-    /// Bytes of the largest device-local heap.
+    /// Size of the largest device-local heap [bytes].
     pub heap: u64,
-    /// Optional abilities.
+    /// Optional features.
     pub features: Features,
-    /// Which physical device and driver it is.
+    /// Identity of the physical device and driver.
     pub id: DeviceId,
     cache_key: String,
 }
 
 impl DeviceInfo {
-    /// Milliseconds between two timestamps, of which the count may have started over once; 0 where the second is the earlier one.
+    /// Milliseconds between two timestamps, including one wrap of the counter; 0 if the second is
+    /// earlier.
     pub(crate) fn ms_between(&self, from: u64, to: u64) -> f64 {
         let ticks = to.wrapping_sub(from) & self.timestamp_mask;
         if ticks > self.timestamp_mask / 2 {
@@ -121,7 +123,7 @@ impl DeviceInfo {
         }
     }
 
-    /// A device that does not exist, with these features and generous limits: for checks that need no device.
+    /// A fictitious device with these features and generous limits, for checks without a device.
     pub fn imaginary(features: Features) -> DeviceInfo {
         let limits = vk::PhysicalDeviceLimits {
             max_image_dimension2_d: 16384,
@@ -172,12 +174,12 @@ pub struct Gpu {
     pub(super) entry: Entry,
 }
 
-/// Held while a device is opened or closed. NVIDIA's driver (580.159) may spin for ever in `vkDestroyDevice` while another
-/// thread of the process opens, closes or leaves a device: seen in one of six runs of 22 tests with a device each, and in
-/// none of 48 in turns.
+/// Held while a device is opened or closed. NVIDIA's driver (580.159) may hang in `vkDestroyDevice`
+/// while another thread of the process opens or closes a device. This happened in one of six runs
+/// of 22 tests with a device each, and in none of 48 serialised runs.
 static DOOR: Mutex<()> = Mutex::new(());
 
-/// Waits for the door, but not for a driver that stands still behind it.
+/// Locks [`DOOR`], but not behind a driver that hangs.
 fn door() -> Option<MutexGuard<'static, ()>> {
     const LONGEST: Duration = Duration::from_secs(5);
     let since = Instant::now();
@@ -219,7 +221,8 @@ fn create_instance(
             .enumerate_instance_extension_properties(None)
             .map_err(VulkanError::at("list extensions"))?;
         let debug_utils = has(&extensions, ext::debug_utils::NAME) || validation;
-        // Where all devices are such, the loader hides them unless it is asked.
+        // If all devices are non-conformant, the loader hides them unless enumeration of
+        // portability drivers is enabled.
         let portability =
             cfg!(target_os = "macos") && has(&extensions, khr::portability_enumeration::NAME);
         let layer_names = if validation {
@@ -264,14 +267,14 @@ fn create_instance(
     }
 }
 
-/// Whether a list of extensions has this one.
+/// Whether a list contains this extension.
 pub(super) fn has(extensions: &[vk::ExtensionProperties], name: &std::ffi::CStr) -> bool {
     extensions
         .iter()
         .any(|e| e.extension_name_as_c_str() == Ok(name))
 }
 
-/// The bits of a timestamp that count (VkQueueFamilyProperties).
+/// Mask of the valid timestamp bits (VkQueueFamilyProperties).
 fn mask_of(valid_bits: u32) -> u64 {
     u64::MAX.checked_shr(64 - valid_bits.min(64)).unwrap_or(0)
 }
@@ -313,7 +316,7 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
         let families = instance.get_physical_device_queue_family_properties(physical);
         let family =
             queue_family(instance, physical).and_then(|f| families.get(f as usize).copied());
-        // Timers of fewer bits would wrap within a frame or two.
+        // Timers with fewer bits would wrap within a frame or two.
         let timestamps = family.is_some_and(|f| f.timestamp_valid_bits >= 36);
         DeviceInfo {
             name: text(&core.device_name),
@@ -354,7 +357,7 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                 clip_distance: have.shader_clip_distance == vk::TRUE,
                 depth_clamp: have.depth_clamp == vk::TRUE,
                 bc: have.texture_compression_bc == vk::TRUE,
-                // Software devices filter anisotropically at a cost of seconds a frame.
+                // Anisotropic filtering costs software devices seconds per frame.
                 anisotropy: have.sampler_anisotropy == vk::TRUE
                     && core.device_type != vk::PhysicalDeviceType::CPU,
                 write_without_format: have.shader_storage_image_write_without_format == vk::TRUE,
@@ -382,7 +385,7 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
     }
 }
 
-/// Why a device cannot be used, or `None`.
+/// The reason why a device cannot be used, or `None`.
 fn refusal(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Option<String> {
     // SAFETY: as in `describe`.
     unsafe {
@@ -417,7 +420,8 @@ fn physical_devices(instance: &ash::Instance) -> Result<Vec<vk::PhysicalDevice>>
     unsafe { instance.enumerate_physical_devices() }.map_err(VulkanError::at("list devices"))
 }
 
-/// Every device with the reason it cannot be used, if any, in the order that `GpuOptions::device` counts.
+/// Every device with the reason why it cannot be used, in the order of the numbers of
+/// `GpuOptions::device`.
 pub fn list_devices() -> Result<Vec<(DeviceInfo, Option<String>)>> {
     let entry = load()?;
     let messages = Messages::default();
@@ -447,7 +451,7 @@ fn choose(instance: &ash::Instance, wanted: Option<&str>) -> Result<vk::Physical
     }
     let matches = |number: usize, info: &DeviceInfo| match wanted {
         None => true,
-        // A number is a number, also where names hold digits.
+        // A number selects by index even if names contain digits.
         Some(w) if w.parse::<usize>().is_ok() => w == number.to_string(),
         Some(w) => info.name.to_lowercase().contains(&w.to_lowercase()),
     };
@@ -480,7 +484,7 @@ impl Gpu {
         Gpu::open_for(options, None)
     }
 
-    /// Opens a device that can present to windows of a window system.
+    /// Opens a device that can present to windows.
     pub fn open_for(
         options: &GpuOptions,
         display: Option<raw_window_handle::RawDisplayHandle>,
@@ -518,7 +522,8 @@ impl Gpu {
             physical_device: physical,
             debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
             buffer_device_address: false,
-            // Small blocks: software devices have one heap of 2 GiB, and large images get their own memory anyway.
+            // Small blocks: software devices have one heap of 2 GiB, and large images use dedicated
+            // allocations.
             allocation_sizes: gpu_allocator::AllocationSizes::new(32 << 20, 16 << 20),
         })
         .map_err(|e| VulkanError::OutOfMemory {
@@ -563,7 +568,7 @@ impl Gpu {
         }))
     }
 
-    /// Waits for a fence as long as the device's patience allows; once that ends, the device counts as hung for good.
+    /// Waits for a fence up to the time limit. After a timeout the device counts as hung for good.
     pub(super) fn wait_for(&self, fence: vk::Fence) -> Result<()> {
         let at = || VulkanError::at("wait for a frame");
         let hung = || VulkanError::Hung(self.patience.unwrap_or_default().as_secs_f64());
@@ -602,17 +607,18 @@ impl Gpu {
         }
     }
 
-    /// How long a frame may take; without end when absent.
+    /// Time limit of a frame; `None` is unlimited.
     pub fn patience(&self) -> Option<Duration> {
         self.patience
     }
 
-    /// Whether a frame did not end in time. Nothing that belongs to such a device is destroyed: its work may go on.
+    /// Whether a frame exceeded the time limit. Objects of a hung device are never destroyed,
+    /// because its work may continue.
     pub fn is_hung(&self) -> bool {
         self.hung.load(Ordering::Relaxed)
     }
 
-    /// Validation messages so far; empty without validation.
+    /// Validation messages so far; empty without the validation layer.
     pub fn messages(&self) -> Vec<String> {
         self.messages
             .0
@@ -621,7 +627,7 @@ impl Gpu {
             .unwrap_or_default()
     }
 
-    /// Writes the pipeline cache to disk, whole or not at all. Failing to is no error: the next start is slower.
+    /// Writes the pipeline cache to disk atomically. A failure only slows down the next start.
     fn save_pipeline_cache(&self) {
         let Some(file) = &self.cache_file else { return };
         // SAFETY: the cache is alive.
@@ -705,7 +711,7 @@ fn create_device(
 impl Drop for Gpu {
     fn drop(&mut self) {
         if self.is_hung() {
-            // The work of the device may use all of it until the process ends.
+            // Pending work may use all allocations until the process ends.
             if let Ok(mut allocator) = self.allocator.lock() {
                 std::mem::forget(allocator.take());
             }
@@ -713,7 +719,7 @@ impl Drop for Gpu {
             return;
         }
         self.save_pipeline_cache();
-        // SAFETY: the device is alive. It may take long, and others need not wait for it.
+        // SAFETY: the device is alive. The wait may be long, so the lock is not held.
         let _ = unsafe { self.device.device_wait_idle() };
         let _door = door();
         // SAFETY: every object made from the device holds an `Arc` of this, so all are gone; the allocator frees its
@@ -748,7 +754,7 @@ mod tests {
         assert_eq!(info(36).ms_between(last - 9_999, 10_000), 1.0);
         assert_eq!(info(36).ms_between(5, 20_005), 1.0);
         assert_eq!(info(64).ms_between(u64::MAX - 9_999, 10_000), 1.0);
-        // A device that writes them out of order.
+        // Timestamps that a device writes out of order.
         assert_eq!(info(36).ms_between(20_005, 5), 0.0);
         assert_eq!((mask_of(0), mask_of(64), mask_of(36)), (0, u64::MAX, last));
     }

@@ -1,19 +1,19 @@
-//! Buffers, images and views that free themselves.
+//! Buffers, images and views with automatic destruction.
 
 use super::{Commands, Gpu, Result, VulkanError, vk};
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use std::sync::Arc;
 
-/// Where a resource lies.
+/// Memory of a resource.
 pub(super) enum Memory {
-    /// Nowhere yet.
+    /// Not bound yet.
     None,
-    /// In memory of its own.
+    /// Own allocation.
     Own(Allocation),
-    /// In memory that others lie in too.
+    /// Part of an allocation shared with other resources.
     Shared(#[expect(dead_code, reason = "kept as long as the resource is")] Arc<SharedMemory>),
-    /// In memory of its own that another device has too, or that is another device's: bytes and memory type.
+    /// Own allocation exported to or imported from another device: memory and memory type.
     #[cfg_attr(
         not(unix),
         expect(dead_code, reason = "shared by file descriptors alone")
@@ -25,7 +25,7 @@ pub(super) enum Memory {
     },
 }
 
-/// Memory of several resources.
+/// An allocation for several resources.
 pub(super) struct SharedMemory {
     gpu: Arc<Gpu>,
     allocation: Option<Allocation>,
@@ -49,7 +49,7 @@ pub struct Buffer {
     pub size: u64,
 }
 
-/// What an image is.
+/// Description of an image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageDesc {
     /// Name for debuggers and errors.
@@ -62,7 +62,7 @@ pub struct ImageDesc {
     pub mips: u32,
     /// Format of the texels.
     pub format: vk::Format,
-    /// Further formats it may be viewed as (mutable format).
+    /// Additional view formats (mutable format).
     pub views: Vec<vk::Format>,
     /// Usage of the image.
     pub usage: vk::ImageUsageFlags,
@@ -74,23 +74,23 @@ pub struct Image {
     pub(super) handle: vk::Image,
     memory: Memory,
     pub desc: ImageDesc,
-    /// Bytes of its memory.
+    /// Size of its memory [bytes].
     pub bytes: u64,
 }
 
-/// Which part of an image a view shows, and as what.
+/// Subresource range and interpretation of a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ViewDesc {
-    /// Shape the shader expects.
+    /// Shape declared in the shader.
     pub kind: vk::ImageViewType,
-    /// Format it is read as.
+    /// Format for reading.
     pub format: vk::Format,
     pub aspect: vk::ImageAspectFlags,
-    /// First mip and their number.
+    /// First mip and count.
     pub mips: (u32, u32),
-    /// First layer and their number.
+    /// First layer and count.
     pub layers: (u32, u32),
-    /// What the view is for: a part of the image's usage, because its format may not allow all of it.
+    /// Usage of the view, a subset of the image's usage that its format supports.
     pub usage: vk::ImageUsageFlags,
 }
 
@@ -130,7 +130,7 @@ fn allocate(
     }
 }
 
-/// A buffer or an image without memory, to be given some together with others.
+/// A buffer or image without memory, to be bound together with others.
 pub enum Bare {
     Buffer(Buffer),
     Image(Image),
@@ -146,7 +146,7 @@ impl Bare {
         }
     }
 
-    /// Bytes that it needs, and what its offset is a multiple of where buffers and images lie side by side.
+    /// Size and offset alignment, valid for buffers and images in one allocation.
     pub fn needs(&self, gpu: &Gpu) -> (u64, u64) {
         let needs = self.requirements();
         (
@@ -243,7 +243,7 @@ fn free(gpu: &Gpu, allocation: Option<Allocation>) {
 }
 
 impl Buffer {
-    /// Makes a buffer; `host` memory can be written and read by the program.
+    /// A buffer; `host` memory is mapped.
     pub fn new(
         gpu: &Arc<Gpu>,
         name: &str,
@@ -271,7 +271,7 @@ impl Buffer {
         )
     }
 
-    /// A buffer of that size without memory, made as `info` says.
+    /// A buffer of this size without memory, created from `info`.
     pub(super) fn with(
         gpu: &Arc<Gpu>,
         name: &str,
@@ -346,7 +346,8 @@ impl Drop for Buffer {
         // SAFETY: owners drop buffers only after the frames that use them have finished.
         unsafe { self.gpu.device.destroy_buffer(self.handle, None) };
         if let Memory::Handed { memory, .. } = self.memory {
-            // SAFETY: the only buffer in it is gone; another device's hold on the same bytes is its own.
+            // SAFETY: the only buffer in this memory is destroyed; the other device holds its own
+            // reference.
             unsafe { self.gpu.device.free_memory(memory, None) };
         }
         free(&self.gpu, self.memory.own());
@@ -354,10 +355,10 @@ impl Drop for Buffer {
 }
 
 impl Image {
-    /// Makes an image with undefined content and layout.
+    /// An image with undefined content and layout.
     ///
     /// # Errors
-    /// Sizes the device cannot make, formats it does not support for this use, out of memory.
+    /// Unsupported sizes, formats or usages; out of memory.
     pub fn new(gpu: &Arc<Gpu>, desc: ImageDesc) -> Result<Image> {
         let mut image = Image::bare(gpu, desc)?;
         image.take_memory()?;
@@ -437,7 +438,7 @@ impl Image {
         let (gpu, handle, name) = (&self.gpu, self.handle, &self.desc.name);
         // SAFETY: the handle is this device's.
         let requirements = unsafe { gpu.device.get_image_memory_requirements(handle) };
-        // Memory of its own: images are few and large, and it keeps buffers and images apart.
+        // Dedicated allocations: images are few and large, and this separates buffers from images.
         let scheme = AllocationScheme::DedicatedImage(handle);
         let allocation = allocate(gpu, name, requirements, MemoryLocation::GpuOnly, scheme)?;
         // SAFETY: as for buffers.
@@ -450,7 +451,7 @@ impl Image {
         bound
     }
 
-    /// The part of it that holds texels.
+    /// The aspect that holds texels.
     pub fn aspect(&self) -> vk::ImageAspectFlags {
         match self.desc.format {
             vk::Format::D32_SFLOAT | vk::Format::D16_UNORM => vk::ImageAspectFlags::DEPTH,
@@ -458,7 +459,7 @@ impl Image {
         }
     }
 
-    /// Extent of a mip.
+    /// Extent of a mip level.
     pub fn mip_extent(&self, mip: u32) -> [u32; 3] {
         self.desc.extent.map(|n| (n >> mip).max(1))
     }
@@ -481,7 +482,7 @@ impl View {
         View::swizzled(image, desc, vk::ComponentMapping::default())
     }
 
-    /// A view whose alpha is 1, whatever the image holds there.
+    /// A view with an alpha of 1, whatever the image holds.
     pub(super) fn opaque(image: &Arc<Image>, desc: &ViewDesc) -> Result<View> {
         let one = vk::ComponentSwizzle::ONE;
         View::swizzled(
@@ -536,7 +537,7 @@ impl Drop for View {
     }
 }
 
-/// Copies data to the device at load time, in one submission.
+/// Batches uploads to the device into one submission.
 pub struct Upload {
     gpu: Arc<Gpu>,
     buffers: Vec<(Arc<Buffer>, Buffer)>,
@@ -564,7 +565,7 @@ impl Upload {
         Ok(staging)
     }
 
-    /// A device buffer with this content.
+    /// A device buffer with the given content.
     pub fn buffer(
         &mut self,
         name: &str,
@@ -586,13 +587,13 @@ impl Upload {
         Ok(buffer)
     }
 
-    /// Fills an image, `parts[layer][mip]`, and leaves it ready to be sampled.
+    /// Fills an image from `parts[layer][mip]` and prepares it for sampling.
     pub fn image(&mut self, image: &Arc<Image>, parts: &[Vec<&[u8]>]) -> Result<()> {
         let mut bytes: Vec<u8> = Vec::new();
         let mut regions = Vec::new();
         for (layer, mips) in (0u32..).zip(parts) {
             for (mip, part) in (0u32..).zip(mips) {
-                // Offsets must be multiples of the texel block's size: 16 covers them all.
+                // Offsets must be multiples of the texel block size; 16 covers all formats.
                 bytes.resize(bytes.len().next_multiple_of(16), 0);
                 let [width, height, depth] = image.mip_extent(mip);
                 regions.push(

@@ -32,23 +32,23 @@ pub(crate) use sampler::{Sampler, SamplerDesc};
 pub(crate) use share::DeviceId;
 pub(crate) use surface::Surface;
 
-/// What went wrong in the Vulkan layer, and what a user can do about it.
+/// Errors of Vulkan, with a remedy for the user.
 #[derive(Debug, thiserror::Error)]
 pub enum VulkanError {
     /// No loader library on this system.
     #[error("cannot load Vulkan: {0}. Install the Vulkan loader (Debian, Ubuntu: libvulkan1)")]
     Loader(String),
-    /// No device that is good enough; the text lists what was found.
+    /// No suitable device; the text lists the devices found.
     #[error(
         "no Vulkan 1.3 device {wanted}: found {found}. A software device comes with the package mesa-vulkan-drivers"
     )]
     NoDevice {
-        /// What was asked for.
+        /// The requested device.
         wanted: String,
-        /// The devices that exist, with the reason each was refused.
+        /// The devices found, with the reason why each was rejected.
         found: String,
     },
-    /// The validation layer was asked for and is not installed.
+    /// The requested validation layer is not installed.
     #[error(
         "the Vulkan validation layer is not installed (Debian, Ubuntu: vulkan-validationlayers)"
     )]
@@ -60,41 +60,41 @@ pub enum VulkanError {
     OutOfMemory {
         /// The resource that did not fit.
         what: String,
-        /// Its size.
+        /// Size of the resource [MiB].
         mib: f64,
     },
-    /// A size the device cannot make.
+    /// A size above a device limit.
     #[error("{what} is {asked}, and {device} allows at most {limit}")]
     Limit {
-        /// What was asked for.
+        /// The limited quantity.
         what: String,
-        /// The value asked for.
+        /// The requested value.
         asked: String,
-        /// The device's limit.
+        /// The limit of the device.
         limit: String,
-        /// The device's name.
+        /// Name of the device.
         device: String,
     },
     /// The device was lost (a driver's reset, often a shader that runs too long).
     #[error("the GPU was lost during {0}: a shader ran too long, or the driver failed")]
     Lost(String),
-    /// A frame did not end in the time that is allowed for it ([`GpuOptions::patience`]).
+    /// A frame exceeded its time limit ([`GpuOptions::patience`]).
     #[error(
         "the GPU has not finished a frame within {0:.0} s: a shader hangs, or asks for too much"
     )]
     Hung(f64),
-    /// The device cannot show pictures in this window.
+    /// The device cannot present to this window.
     #[error(
         "{0} cannot present to this window. Name another device with --window-device (see `conelab devices`)"
     )]
     CannotPresent(String),
-    /// The window system.
+    /// Error of the window system.
     #[error("the window failed: {0}")]
     Window(String),
     /// Any other error code.
     #[error("Vulkan failed to {what}: {code}")]
     Code {
-        /// The action.
+        /// The failed action.
         what: String,
         /// Vulkan's result code.
         code: vk::Result,
@@ -102,7 +102,7 @@ pub enum VulkanError {
 }
 
 impl VulkanError {
-    /// Names the action that a Vulkan call was part of.
+    /// Adds the failed action to a Vulkan result.
     pub(crate) fn at(what: impl Into<String>) -> impl FnOnce(vk::Result) -> VulkanError {
         let what = what.into();
         move |code| match code {

@@ -1,4 +1,4 @@
-//! Paints egui's triangles and the program's pictures, into a window or into an image.
+//! Draws egui meshes and pictures of the program into a window or an image.
 
 use super::surface::{Surface, Swapchain, WHOLE};
 use super::{
@@ -12,7 +12,7 @@ use gpu_allocator::MemoryLocation;
 use std::sync::{Arc, Weak};
 use std::time::Instant;
 
-/// Where the painter's pixels go.
+/// Render target.
 enum Target {
     Window {
         surface: Box<Surface>,
@@ -22,40 +22,42 @@ enum Target {
     Image(Option<(Arc<Image>, View)>),
 }
 
-/// Frames painted ahead.
+/// Frames in flight.
 const SLOTS: usize = 2;
 
 struct Slot {
     commands: FrameSlot,
     acquired: vk::Semaphore,
-    /// Where each picture's new pixels wait to be copied; kept, because making host memory takes milliseconds.
+    /// Staging buffers for new pixels, one per picture; reused, because allocating host memory
+    /// takes milliseconds.
     staging: Vec<Option<Buffer>>,
-    /// What its last frame reads of another device: held until that frame has finished.
+    /// Buffers of another device that the last frame reads, held until it has finished.
     reads: Vec<(Arc<Buffer>, Arc<Buffer>)>,
 }
 
-/// A picture of 8-bit RGBA pixels that the program changes often.
+/// A picture of 8-bit RGBA pixels that the program updates often.
 struct Picture {
     image: Option<(Arc<Image>, View)>,
     set: vk::DescriptorSet,
     id: TextureId,
 }
 
-/// New pixels of a picture.
+/// New pixels for a picture.
 pub struct Pixels<'a> {
-    /// Number of the picture, below the number that the painter was made with.
+    /// Index of the picture, below the number given at creation.
     pub picture: usize,
     pub size: [u32; 2],
     /// RGBA, 8 bits each, tightly packed.
     pub source: PixelSource<'a>,
 }
 
-/// Where new pixels are.
+/// Location of new pixels.
 #[derive(Clone, Copy)]
 pub enum PixelSource<'a> {
     /// In main memory.
     Bytes(&'a [u8]),
-    /// In a buffer of another device with the same [`super::DeviceId`], made by [`Buffer::shareable`] and handed over.
+    /// In a buffer of another device with the same [`super::DeviceId`], created by
+    /// [`Buffer::shareable`] and handed over.
     Shared(&'a Arc<Buffer>),
 }
 
@@ -69,14 +71,14 @@ pub struct Painter {
     pool: vk::DescriptorPool,
     layout: vk::DescriptorSetLayout,
     upload_pool: vk::CommandPool,
-    /// Buffers of another device, and the same bytes here.
+    /// Imported buffers of another device.
     taken: Vec<(Weak<Buffer>, Arc<Buffer>)>,
     target: Target,
     format: vk::Format,
     gpu: Arc<Gpu>,
-    /// Milliseconds on the GPU of the last frame known: copying its pictures, and drawing.
+    /// GPU time of the last finished frame [ms]: copying pictures, and drawing.
     pub gpu_ms: (f64, f64),
-    /// Milliseconds that the last frame waited for an earlier one to finish on the GPU.
+    /// Time that the last frame waited for an earlier one on the GPU [ms].
     pub waited_ms: f64,
 }
 
@@ -114,7 +116,7 @@ impl Painter {
         )
     }
 
-    /// A painter into an image, read back with [`Painter::read`].
+    /// A painter into an image that [`Painter::read`] reads back.
     pub fn offscreen(gpu: &Arc<Gpu>, pictures: usize) -> Result<Painter> {
         Painter::new(
             gpu,
@@ -128,7 +130,7 @@ impl Painter {
         let sampler = Sampler::new(
             gpu,
             &SamplerDesc {
-                // Enlarged pixels are to be seen as they are.
+                // Magnified pixels stay visible.
                 filter: vk::Filter::NEAREST,
                 mip_filter: vk::SamplerMipmapMode::NEAREST,
                 address: vk::SamplerAddressMode::CLAMP_TO_EDGE,
@@ -137,7 +139,7 @@ impl Painter {
                 anisotropic: false,
             },
         )?;
-        // The layout is declared to be one that the renderer's own is compatible with.
+        // The layout is declared compatible with the renderer's own.
         let layout =
             vulkan::create_vulkan_descriptor_set_layout(&gpu.device).map_err(renderer_error)?;
         let mut painter = Painter {
@@ -230,20 +232,20 @@ impl Painter {
         Ok(())
     }
 
-    /// The egui texture of a picture; it may be drawn once it has had pixels.
+    /// The egui texture of a picture; usable after its first pixels.
     pub fn picture(&self, number: usize) -> TextureId {
         self.pictures[number].id
     }
 
-    /// The window's size changed, or its content must be made anew.
+    /// Recreates the swapchain after the window was resized.
     pub fn resized(&mut self) {
         if let Target::Window { stale, .. } = &mut self.target {
             *stale = true;
         }
     }
 
-    /// Paints a frame: changes textures, copies pictures, draws, presents. `false` if there was nothing to paint on (a
-    /// window without area, or one that does not take pictures now).
+    /// Draws and presents a frame: updates textures, copies pictures, draws. Returns `false` if
+    /// there is no target (a window without area, or one that provides no image now).
     pub fn paint(
         &mut self,
         size: (u32, u32),
@@ -375,7 +377,7 @@ impl Painter {
         let Some(renderer) = self.renderer.as_mut().filter(|_| !textures.free.is_empty()) else {
             return Ok(());
         };
-        // Rare (a thumbnail that is gone): not worth remembering which frames still use them.
+        // Rare (a removed thumbnail), so it waits for all frames instead of tracking their use.
         for slot in &mut self.slots {
             slot.commands.wait()?;
         }
@@ -385,7 +387,7 @@ impl Painter {
         Ok(())
     }
 
-    /// Gives a picture an image of the size of its new pixels.
+    /// Resizes a picture's image to its new pixels.
     fn fit_picture(&mut self, p: &Pixels<'_>) -> Result<()> {
         let Some(picture) = self.pictures.get(p.picture) else {
             return Ok(());
@@ -401,7 +403,7 @@ impl Painter {
         for slot in &mut self.slots {
             slot.commands.wait()?;
         }
-        // Decoded when sampled and encoded when drawn, both by the device: the bytes arrive as they are.
+        // The device decodes on sampling and encodes on drawing, so bytes are preserved.
         let format = vk::Format::R8G8B8A8_SRGB;
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
         let (image, view) = plain_image(
@@ -428,7 +430,7 @@ impl Painter {
     }
 
     fn stage(&mut self, pixels: &[Pixels<'_>]) -> Result<()> {
-        // Pictures change their size: what their old buffers were is let go.
+        // Resized pictures leave old buffers behind: release those without another owner.
         let held = |b: &Arc<Buffer>| Arc::strong_count(b) > 1;
         self.taken
             .retain(|(theirs, ours)| theirs.strong_count() > 0 || held(ours));
@@ -477,7 +479,7 @@ impl Painter {
         Ok(())
     }
 
-    /// The image to draw on and, for a window's, the semaphore to signal.
+    /// The image to draw to and, for a window, the semaphore to signal.
     #[expect(clippy::type_complexity, reason = "used once, by paint")]
     fn acquire(
         &mut self,
@@ -544,7 +546,8 @@ impl Painter {
                     let Some(chain) = swapchain else {
                         return Ok(None);
                     };
-                    // A window that is hidden may give no image for long: the program must not stand still.
+                    // A hidden window may provide no image for a long time; the timeout keeps the
+                    // program responsive [ns].
                     let timeout = 100_000_000;
                     // SAFETY: the semaphore is unused: its last frame has been waited for.
                     let next = unsafe {
@@ -690,7 +693,7 @@ fn plain_image(
         layers: (0, 1),
         usage: view_usage,
     };
-    // Attachments must be viewed as they are.
+    // Views of attachments must not swizzle.
     let sampled = view_usage.contains(vk::ImageUsageFlags::SAMPLED);
     let view = if sampled {
         View::opaque(&image, &desc)?

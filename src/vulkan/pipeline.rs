@@ -1,4 +1,4 @@
-//! Pipelines, their layouts and descriptor sets. One descriptor set a pipeline, number 0.
+//! Pipelines, layouts and descriptor sets. Each pipeline has one descriptor set, number 0.
 
 use super::{Buffer, Gpu, Result, Sampler, View, VulkanError, vk};
 use serde::Deserialize;
@@ -6,7 +6,7 @@ use serde::Deserialize;
 use std::ffi::CString;
 use std::sync::Arc;
 
-/// Shader stages, in pipeline order.
+/// Shader stages in pipeline order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Stage {
     /// `.vert`
@@ -34,7 +34,7 @@ impl Stage {
         (Stage::Compute, "comp"),
     ];
 
-    /// The stage that a file name's extension means.
+    /// The stage of a file name's extension.
     pub(crate) fn of_file(name: &str) -> Option<Stage> {
         let extension = name.rsplit_once('.')?.1;
         Stage::ALL
@@ -54,7 +54,7 @@ impl Stage {
         }
     }
 
-    /// The stage in synchronization2's terms.
+    /// The stage as a synchronization2 flag.
     pub fn sync(self) -> vk::PipelineStageFlags2 {
         match self {
             Stage::Vertex => vk::PipelineStageFlags2::VERTEX_SHADER,
@@ -67,10 +67,10 @@ impl Stage {
     }
 }
 
-/// A specialisation constant's 32-bit value.
+/// A 32-bit specialisation constant.
 pub type SpecValue = u32;
 
-/// One stage of a pipeline: SPIR-V whose bindings are those of the pipeline's list.
+/// One stage of a pipeline; SPIR-V with the bindings of the pipeline's list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageDesc {
     /// Stage of the shader.
@@ -79,7 +79,7 @@ pub struct StageDesc {
     pub constants: Vec<(u32, SpecValue)>,
 }
 
-/// One binding of the set.
+/// A binding of the descriptor set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BindingDesc {
     pub binding: u32,
@@ -88,7 +88,7 @@ pub struct BindingDesc {
     pub stage: Stage,
 }
 
-/// Formats of the attachments a pipeline writes; a colour that is not wanted is `UNDEFINED`.
+/// Attachment formats; an unused colour is `UNDEFINED`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Attachments {
     /// Colour formats by location.
@@ -96,20 +96,20 @@ pub struct Attachments {
     pub depth: Option<vk::Format>,
 }
 
-/// How a colour is combined with what is there.
+/// Blend operation of a colour attachment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Blend {
-    /// Replaced.
+    /// Replaces the destination.
     #[default]
     Off,
     /// Over, by the source's alpha.
     Alpha,
-    /// Summed.
+    /// Sum.
     Add,
-    /// The smaller of both.
+    /// Minimum.
     Min,
-    /// The larger of both.
+    /// Maximum.
     Max,
 }
 
@@ -146,32 +146,32 @@ pub struct DrawState {
     pub topology: vk::PrimitiveTopology,
     /// Culled faces (counter-clockwise is front).
     pub cull: vk::CullModeFlags,
-    /// Depth test; no test when absent.
+    /// Depth test; disabled if absent.
     pub depth_test: Option<vk::CompareOp>,
     /// Whether depth is written.
     pub depth_write: bool,
-    /// Clamp depth instead of clipping.
+    /// Clamps depth instead of clipping.
     pub depth_clamp: bool,
-    /// Samples of attachment-less rasterisation; 1 otherwise.
+    /// Sample count of attachment-less rasterisation; 1 otherwise.
     pub samples: u32,
     /// Overestimating conservative rasterisation.
     pub conservative: bool,
-    /// No rasterisation at all.
+    /// Disables rasterisation.
     pub discard: bool,
-    /// Blending of each colour attachment.
+    /// Blending per colour attachment.
     pub blend: Vec<Blend>,
 }
 
-/// A pipeline to make.
+/// Description of a pipeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PipelineDesc {
     pub name: String,
     pub stages: Vec<StageDesc>,
     /// Bindings of the shaders.
     pub bindings: Vec<BindingDesc>,
-    /// Bytes of push constants (all stages).
+    /// Size of the push constants of all stages [bytes].
     pub push_bytes: u32,
-    /// Raster state; a compute pipeline without.
+    /// Raster state; `None` for a compute pipeline.
     pub draw: Option<(DrawState, Attachments)>,
 }
 
@@ -273,7 +273,7 @@ impl Pipeline {
     }
 }
 
-/// Shader modules live only while pipelines are made from them.
+/// Shader modules, destroyed after pipeline creation.
 struct Modules<'a> {
     gpu: &'a Gpu,
     handles: Vec<vk::ShaderModule>,
@@ -287,7 +287,7 @@ impl<'a> Modules<'a> {
         };
         for stage in &desc.stages {
             let info = vk::ShaderModuleCreateInfo::default().code(&stage.spirv);
-            // SAFETY: the words come from shaderc, or from a cache file whose checksum fits.
+            // SAFETY: the words come from shaderc or from a cache file with a valid checksum.
             let handle = unsafe { gpu.device.create_shader_module(&info, None) }.map_err(
                 VulkanError::at(format!("load a shader of pass '{}'", desc.name)),
             )?;
@@ -376,7 +376,7 @@ fn graphics(
         .depth_test_enable(state.depth_test.is_some())
         .depth_write_enable(state.depth_write)
         .depth_compare_op(state.depth_test.unwrap_or(vk::CompareOp::ALWAYS));
-    // What has no attachment is not written.
+    // Unused attachments have no blend state.
     let blends: Vec<_> = state
         .blend
         .iter()
@@ -429,17 +429,17 @@ impl Drop for Pipeline {
     }
 }
 
-/// Memory for descriptor sets, all freed together.
+/// A pool of descriptor sets that are freed together.
 pub struct DescriptorPool {
     gpu: Arc<Gpu>,
     handle: vk::DescriptorPool,
 }
 
-/// A descriptor set, valid while its pool is.
+/// A descriptor set, valid as long as its pool.
 #[derive(Clone, Copy)]
 pub struct DescriptorSet(pub(super) vk::DescriptorSet);
 
-/// What a binding is set to.
+/// The value of a binding.
 pub enum DescriptorWrite<'a> {
     Buffer(&'a Buffer),
     /// A sampled image in a layout.
@@ -448,7 +448,7 @@ pub enum DescriptorWrite<'a> {
 }
 
 impl DescriptorPool {
-    /// A pool with room for the sets of these pipelines' bindings.
+    /// A pool for `sets` sets of these binding types.
     pub fn new(gpu: &Arc<Gpu>, sets: u32, kinds: &[vk::DescriptorType]) -> Result<DescriptorPool> {
         let count = |kind: vk::DescriptorType| {
             let n = kinds.iter().filter(|k| **k == kind).count();
@@ -475,7 +475,7 @@ impl DescriptorPool {
         })
     }
 
-    /// A set for the pipeline with these values.
+    /// A descriptor set of the pipeline with these values.
     ///
     /// # Errors
     /// The pool is full.

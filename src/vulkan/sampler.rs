@@ -6,16 +6,16 @@ use std::sync::Arc;
 /// Filter and address mode of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SamplerDesc {
-    /// Between texels.
+    /// Texel filter.
     pub filter: vk::Filter,
     pub mip_filter: vk::SamplerMipmapMode,
-    /// Outside [0, 1].
+    /// Address mode outside [0, 1].
     pub address: vk::SamplerAddressMode,
-    /// Colour outside, with a border address mode.
+    /// Border colour for a border address mode.
     pub border: vk::BorderColor,
-    /// Depth comparison, for shadow samplers.
+    /// Depth comparison for shadow samplers.
     pub compare: Option<vk::CompareOp>,
-    /// Anisotropic filtering, as much as the device has (16 at most).
+    /// Anisotropic filtering, limited by the device and 16.
     pub anisotropic: bool,
 }
 

@@ -12,7 +12,7 @@ use super::{Buffer, Commands, Gpu, Result, VulkanError, vk};
 use ash::khr;
 use std::sync::Arc;
 
-/// Which physical device and driver a device belongs to; memory is shared between equal ones (Vulkan 1.3,
+/// Identity of a physical device and driver; only equal ones can share memory (Vulkan 1.3,
 /// `VkPhysicalDeviceIDProperties`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct DeviceId {
@@ -20,7 +20,7 @@ pub struct DeviceId {
     pub(super) driver: [u8; 16],
 }
 
-/// A copy in, and a copy out.
+/// Copy destination and source.
 #[cfg(unix)]
 const USAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
     vk::BufferUsageFlags::TRANSFER_SRC.as_raw() | vk::BufferUsageFlags::TRANSFER_DST.as_raw(),
@@ -29,7 +29,7 @@ const USAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
 #[cfg(unix)]
 const HANDLE: vk::ExternalMemoryHandleTypeFlags = vk::ExternalMemoryHandleTypeFlags::OPAQUE_FD;
 
-/// Whether a device can give away buffers and take those of another.
+/// Whether a device can export and import buffers.
 #[cfg(unix)]
 pub(super) fn is_supported(
     instance: &ash::Instance,
@@ -61,7 +61,7 @@ pub(super) fn is_supported(
     false
 }
 
-/// A buffer's memory as another device takes it.
+/// An exported memory handle.
 #[cfg(unix)]
 struct Handed {
     file: std::os::fd::OwnedFd,
@@ -71,7 +71,7 @@ struct Handed {
 
 #[cfg(unix)]
 impl Buffer {
-    /// A buffer in the device's memory that another device may take too ([`Buffer::taken`]).
+    /// An exportable buffer in device memory ([`Buffer::taken`]).
     pub fn shareable(gpu: &Arc<Gpu>, name: &str, size: u64) -> Result<Buffer> {
         let mut buffer = Buffer::external(gpu, name, size)?;
         // SAFETY: the handle is this device's.
@@ -112,10 +112,10 @@ impl Buffer {
         Ok(buffer)
     }
 
-    /// The same bytes as those of another device's shareable buffer, on this device.
+    /// Imports another device's shareable buffer.
     ///
     /// # Errors
-    /// The devices are not of one physical device; out of memory.
+    /// The devices belong to different physical devices; out of memory.
     pub fn taken(gpu: &Arc<Gpu>, name: &str, from: &Buffer) -> Result<Buffer> {
         use std::os::fd::IntoRawFd;
         let handed = from.hand()?;
@@ -194,12 +194,12 @@ impl Buffer {
 
 #[cfg(not(unix))]
 impl Buffer {
-    /// No buffer: this system's kind of sharing is not built.
+    /// Always fails: buffer sharing is not implemented on this system.
     pub fn shareable(_: &Arc<Gpu>, name: &str, size: u64) -> Result<Buffer> {
         Err(out_of_memory(name, size))
     }
 
-    /// No buffer, as [`Buffer::shareable`].
+    /// Always fails, like [`Buffer::shareable`].
     pub fn taken(_: &Arc<Gpu>, name: &str, from: &Buffer) -> Result<Buffer> {
         Err(out_of_memory(name, from.size))
     }
@@ -213,7 +213,7 @@ fn out_of_memory(name: &str, bytes: u64) -> VulkanError {
 }
 
 impl Commands<'_> {
-    /// Gives a shared buffer, written by copies, to the other device.
+    /// Releases a shared buffer, written by copies, to the other device.
     pub fn hand_over(&mut self, buffer: &Buffer) {
         let copy = (
             vk::PipelineStageFlags2::ALL_TRANSFER,
@@ -228,7 +228,7 @@ impl Commands<'_> {
         );
     }
 
-    /// Takes a shared buffer that the other device has handed over, to copy from.
+    /// Acquires a shared buffer from the other device, to copy from.
     pub fn take_over(&mut self, buffer: &Buffer) {
         let copy = (
             vk::PipelineStageFlags2::ALL_TRANSFER,

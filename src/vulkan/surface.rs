@@ -5,11 +5,11 @@ use ash::khr;
 use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 use std::sync::Arc;
 
-/// Anything that can be presented to.
+/// Window types that can be presented to.
 pub trait WindowHandles: HasWindowHandle + HasDisplayHandle + Send + Sync {}
 impl<T: HasWindowHandle + HasDisplayHandle + Send + Sync> WindowHandles for T {}
 
-/// A window's surface; it keeps the window alive.
+/// A window's surface, which keeps the window alive.
 pub struct Surface {
     gpu: Arc<Gpu>,
     pub(super) loader: khr::surface::Instance,
@@ -18,7 +18,7 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Makes the surface of a window.
+    /// Creates the surface of a window.
     ///
     /// # Errors
     /// The device cannot present to it.
@@ -45,7 +45,7 @@ impl Surface {
         }
     }
 
-    /// Makes it anew after it was lost.
+    /// Recreates a lost surface.
     pub(super) fn renew(&mut self) -> Result<()> {
         let handle = create(&self.gpu, &self.window)?;
         // SAFETY: no swapchain of the old surface is alive.
@@ -80,12 +80,12 @@ pub(super) struct Swapchain {
     pub format: vk::Format,
     pub images: Vec<vk::Image>,
     pub views: Vec<vk::ImageView>,
-    /// Signalled when an image has been drawn.
+    /// Signalled when an image has been rendered.
     pub drawn: Vec<vk::Semaphore>,
 }
 
 impl Swapchain {
-    /// Images for a surface of that size; `None` while the window has no area.
+    /// Images for a surface size; `None` if the window has no area.
     pub fn new(gpu: &Arc<Gpu>, surface: &Surface, size: (u32, u32)) -> Result<Option<Swapchain>> {
         let at = || VulkanError::at("make the window's images");
         // SAFETY: device and surface belong to one instance; what is made is destroyed in `drop`.
@@ -99,7 +99,8 @@ impl Swapchain {
                 .loader
                 .get_physical_device_surface_formats(physical, surface.handle)
                 .map_err(at())?;
-            // Formats that encode show pictures as they are; without, the painter encodes, a few steps of 255 off.
+            // sRGB formats preserve pictures. Without them the painter encodes itself, with an
+            // error of a few steps of 255.
             let wanted = [
                 vk::Format::B8G8R8A8_SRGB,
                 vk::Format::R8G8B8A8_SRGB,
@@ -184,7 +185,7 @@ impl Swapchain {
     }
 }
 
-/// The one mip and layer of a window's image.
+/// The only mip and layer of a window's image.
 pub(super) const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
     aspect_mask: vk::ImageAspectFlags::COLOR,
     base_mip_level: 0,

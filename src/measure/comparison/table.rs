@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 const LETTERS: [&str; 2] = ["A", "B"];
 
-/// The comparison as a table: a block for each part, a row for each region and picture.
+/// The comparison as a table: a block per component, a row per region and picture.
 pub fn table(comparison: &Comparison) -> String {
     let mut out = String::new();
     for (letter, name) in LETTERS.iter().zip(&comparison.pictures) {
@@ -84,12 +84,12 @@ fn lines(region: &RegionComparison) -> Vec<Line> {
     lines
 }
 
-/// The metrics that have a column, and its head.
+/// The metrics with a column, and its heading.
 fn columns() -> impl Iterator<Item = (&'static Metric, &'static str)> {
     METRICS.iter().filter_map(|m| Some((m, m.head?)))
 }
 
-/// A number to four digits; `-` where there is none.
+/// A number with four digits; `-` if it is not finite.
 fn short(v: f64) -> String {
     match v.abs() {
         a if a.is_nan() => "-".into(),

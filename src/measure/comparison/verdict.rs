@@ -9,11 +9,11 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Verdict {
     A,
-    /// The second.
+    /// The second picture is better.
     B,
     #[serde(rename = "equal")]
     Equal,
-    /// Not to be told: the reference's noise is as large as the difference.
+    /// Undecided: the difference is within the noise of the reference.
     #[serde(rename = "within noise")]
     WithinNoise,
 }
@@ -29,9 +29,10 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// The better of two, by metric. relMSE is not told within four times its noise, structure within once, which is all that
-/// the noise adds to a perfect picture. The noise of other metrics is not known; none is told where both pictures' relMSE
-/// is within it.
+/// The better picture by metric. Differences are insignificant within four times the noise for
+/// relMSE, and within the noise for structure, because the noise adds that much to a perfect
+/// picture. The noise of other metrics is unknown; they are undecided if both pictures' relMSE is
+/// within the noise.
 pub fn better(a: &Scores, b: &Scores, noise: Option<Noise>) -> BTreeMap<&'static str, Verdict> {
     let both = [a, b]
         .iter()

@@ -1,18 +1,18 @@
-//! The part of a triangle inside a box (Sutherland and Hodgman 1974).
+//! Clipping of a triangle to a box (Sutherland and Hodgman 1974).
 
 use glam::DVec3;
 
 /// A corner of a clipped triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
-    /// World, m.
+    /// World position [m].
     pub position: DVec3,
-    /// Weights of the triangle's own corners; their sum is 1.
+    /// Barycentric weights; their sum is 1.
     pub weights: DVec3,
 }
 
-/// The convex polygon that a triangle has inside the box from `low` to `high`; empty when there is none. Where they only
-/// touch it may be a line or a point.
+/// The convex polygon of a triangle inside the box from `low` to `high`; empty if they are
+/// disjoint. If they only touch, it may be a line or a point.
 pub fn clip(t: [DVec3; 3], low: DVec3, high: DVec3) -> Vec<Corner> {
     let units = [DVec3::X, DVec3::Y, DVec3::Z];
     let mut polygon: Vec<Corner> = t

@@ -1,4 +1,4 @@
-//! How far a voxelizer's cells are from the exact ones.
+//! Comparison of a voxelizer's cells with the exact ones.
 
 use super::exact::Cell;
 use super::fill::{Neighbours, flood};
@@ -9,76 +9,77 @@ use super::shape::SHAPES;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Figures of a comparison; V is the voxelizer's set, E the exact one, both without borderline cells.
+/// Scores of a comparison; V is the voxelizer's set, E the exact one, both without borderline
+/// cells.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Score {
-    /// Cells of the voxelizer, borderline ones too.
+    /// Cells of the voxelizer, including borderline ones.
     pub voxels: u64,
-    /// |E|.
+    /// Exact cells: |E|.
     pub exact: u64,
-    /// Cells too near to say.
+    /// Borderline cells, which rounding decides.
     pub(crate) borderline: u64,
-    /// |E \ V|.
+    /// Missed cells: |E \ V|.
     pub holes: u64,
-    /// |V \ E|.
+    /// Excess cells: |V \ E|.
     pub extras: u64,
-    /// |V & E| / |E|; none where E is empty.
+    /// |V & E| / |E|; `None` if E is empty.
     pub recall: Option<f64>,
-    /// |V & E| / |V|; none where V is empty.
+    /// |V & E| / |V|; `None` if V is empty.
     pub precision: Option<f64>,
     /// Cells of the thin set.
     pub thin: u64,
-    /// The part of the thin set that V has.
+    /// Fraction of the thin set that V contains.
     pub thin_recall: Option<f64>,
-    /// Cells that the exact surfaces enclose; 0 where nothing is closed, and then the next two say nothing.
+    /// Cells enclosed by the exact surfaces; if 0, the next two fields are meaningless.
     pub enclosed: u64,
-    /// Cells of them that a path from outside through faces reaches past V.
+    /// Enclosed cells that a path from outside through faces reaches past V.
     pub leaked_6: u64,
-    /// Cells of them that a path through faces, edges and corners reaches.
+    /// Enclosed cells that a path through faces, edges and corners reaches.
     pub leaked_26: u64,
-    /// Over V & E: root of the mean squared difference of a linear base colour's channel, and the largest.
+    /// RMS difference of a linear base colour's channel over V & E.
     pub color_rms: f64,
-    /// The largest difference of a channel.
+    /// Largest difference of a channel.
     pub(crate) color_max: f64,
-    /// Mean angle between normals where the exact ones agree by more than half, degrees.
+    /// Mean angle between normals [degrees], where the exact normals are longer than 0.5.
     pub(crate) normal_mean: f64,
-    /// Mean of opacity less exact coverage.
+    /// Mean difference of opacity and exact coverage.
     pub(crate) opacity_bias: f64,
-    /// Root mean square of the same.
+    /// RMS difference of opacity and exact coverage.
     pub(crate) opacity_rms: f64,
     /// The scores by class of triangle.
     pub shapes: BTreeMap<String, ShapeScore>,
 }
 
-/// Figures of the cells that triangles of a class overlap; others may overlap them too.
+/// Scores of the cells that triangles of a class overlap, possibly with others.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ShapeScore {
     pub exact: u64,
-    /// Cells that the voxelizer misses.
+    /// Missed cells.
     pub holes: u64,
-    /// Extras beside (26 neighbours) such a cell.
+    /// Excess cells next to such a cell (26 neighbours).
     pub extras: u64,
-    /// Found of the exact ones.
+    /// Found cells relative to the exact ones.
     pub recall: f64,
-    /// Found over found and extras.
+    /// Found cells relative to found and excess ones.
     pub precision: Option<f64>,
-    /// Root mean square difference of a linear base colour's channel.
+    /// RMS difference of a linear base colour's channel.
     pub color_rms: f64,
 }
 
-/// The figures, and cells by number.
+/// Scores, and cells by index.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     pub score: Score,
-    /// In both sets, or borderline and in the voxelizer's.
+    /// Cells in both sets, and borderline cells of the voxelizer.
     pub right: Vec<u32>,
-    /// Exact ones that the voxelizer misses.
+    /// Exact cells that the voxelizer misses.
     pub holes: Vec<u32>,
-    /// The voxelizer's that no triangle overlaps.
+    /// Cells of the voxelizer that no triangle overlaps.
     pub extras: Vec<u32>,
 }
 
-/// Compares a voxelizer's cells with the exact ones; both in order of numbers.
+/// Compares a voxelizer's cells with the exact ones; both sorted by index.
 pub fn compare(grid: &Grid, exact: &[Cell], voxels: &[Voxel]) -> Comparison {
     let mut out = Comparison {
         score: Score::default(),
@@ -159,7 +160,7 @@ fn ratio(part: u64, whole: u64) -> Option<f64> {
     (whole > 0).then(|| part as f64 / whole as f64)
 }
 
-/// Sums over cells that are in both sets.
+/// Sums over cells in both sets.
 #[derive(Default)]
 struct Errors {
     cells: u64,
@@ -202,7 +203,7 @@ impl Errors {
     }
 }
 
-/// The classes of triangles in the cells around one.
+/// The classes of triangles in the cells around a cell.
 fn shapes_near(grid: &Grid, exact: &[Cell], number: u32) -> u8 {
     let [x, y, z] = grid.place(number);
     let size = grid.size();
@@ -220,15 +221,15 @@ fn shapes_near(grid: &Grid, exact: &[Cell], number: u32) -> u8 {
     set
 }
 
-/// Cells that the exact surfaces enclose, and how many of them a fill from outside reaches past the voxels: through faces,
-/// and through edges and corners too.
+/// Enclosed cells of the exact surfaces, and how many of them a flood fill from outside reaches
+/// past the voxels: through faces, and through edges and corners too.
 fn leaks(grid: &Grid, exact: &[Cell], voxels: &[Voxel]) -> (u64, u64, u64) {
     let set = |numbers: &mut dyn Iterator<Item = u32>| {
         let mut blocked = vec![false; grid.count()];
         numbers.for_each(|n| blocked[n as usize] = true);
         blocked
     };
-    // Borderline cells block here: else one of them would open what the triangles close.
+    // Borderline cells block the fill, because a gap would open closed surfaces.
     let surface = set(&mut exact.iter().map(|c| c.number));
     let outside = flood(grid, &surface, Neighbours::TwentySix);
     let inside: Vec<usize> = (0..grid.count())

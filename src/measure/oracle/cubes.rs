@@ -1,15 +1,15 @@
-//! A comparison to look at: a scene of cubes.
+//! A comparison as a scene of cubes.
 
 use super::compare::Comparison;
 use super::grid::Grid;
 use crate::scene::{Instance, Material, Mesh, Scene, Submesh, Vertex};
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
-/// Most cells in a picture: their faces then take less than 1 GB.
+/// Maximum cells of a scene: their faces take less than 1 GB.
 const MAX_CUBES: usize = 1_000_000;
 
-/// The cells as cubes: right ones grey, holes red, extras blue. Faces between cubes are left out. Lit like the scene it is
-/// about only in that it has the same cameras.
+/// The cells as cubes: correct ones grey, holes red, extras blue. Faces between cubes are omitted.
+/// The cameras are those of `like`.
 ///
 /// # Errors
 /// More than a million cells.

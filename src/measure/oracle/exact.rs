@@ -1,4 +1,4 @@
-//! The cells that a scene's triangles exactly overlap, and what is in them.
+//! The cells that a scene's triangles exactly overlap, with their content.
 
 use super::clip::{Corner, clip};
 use super::grid::Grid;
@@ -10,45 +10,46 @@ use glam::{DVec3, Vec3, Vec4};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Layers of cells worked on at once by a thread: what a triangle leaves in each cell is kept only so long.
+/// Layers of cells per parallel task, which bounds the memory of triangle-cell pairs.
 const LAYERS: u32 = 4;
 
 /// A cell that triangles overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// Its number in the grid.
+    /// Index in the grid.
     pub number: u32,
-    /// Whether any triangle overlaps it. Borderline also where alpha masks may or may not let through.
+    /// Whether any triangle overlaps it. Also borderline if an alpha mask is undecided.
     pub overlap: Overlap,
     /// Overlap with the thin set.
     pub thin: Overlap,
     /// Bit i: a triangle of class `SHAPES[i]` overlaps it.
     pub shapes: u8,
-    /// Mean linear base colour of the triangles inside, by area.
+    /// Area-weighted mean base colour of the triangles inside, linear.
     pub color: Vec3,
-    /// Mean shading normal of the triangles inside, by area; shorter than 1 where they disagree.
+    /// Area-weighted mean shading normal of the triangles inside; shorter than 1 if they disagree.
     pub normal: Vec3,
-    /// Part of a face that the triangles inside hide, seen along the axis along which they hide most: the sum of their
-    /// areas, each hiding others or not, at most 1.
+    /// Covered fraction of a face along the axis of the largest coverage: the sum of the projected
+    /// areas, regardless of mutual occlusion, at most 1.
     pub coverage: f32,
 }
 
-/// What one triangle leaves in one cell.
+/// Overlap of one triangle and one cell.
 struct Hit {
     number: u32,
     overlap: Overlap,
     thin: Overlap,
     shape: u8,
     area: f64,
-    /// Sums over the area.
+    /// Sums weighted by area.
     color: DVec3,
     normal: DVec3,
-    /// Area seen along x, y and z, over that of the cell's face.
+    /// Projected area along x, y and z, relative to the cell's face.
     hidden: DVec3,
 }
 
-/// Every cell that is not outside of all triangles, in order of numbers. Parallel over layers; the result does not depend
-/// on the number of threads. Memory: 60 bytes a cell, and what a few layers hold for each thread.
+/// Every cell that is not outside all triangles, sorted by index. Parallel over layers; the result
+/// does not depend on the number of threads. Memory: 60 bytes per cell, plus a few layers per
+/// thread.
 pub fn exact(triangles: &[Triangle], surfaces: &Surfaces<'_>, grid: &Grid) -> Vec<Cell> {
     let shapes: Vec<u8> = triangles
         .par_iter()
@@ -63,7 +64,7 @@ pub fn exact(triangles: &[Triangle], surfaces: &Surfaces<'_>, grid: &Grid) -> Ve
             for (t, shape) in triangles.iter().zip(&shapes) {
                 add_hits(t, *shape, surfaces, grid, &layers, &mut hits);
             }
-            // Stable: a cell's hits stay in the order of triangles, so its sums are the same every time.
+            // A stable sort keeps the order of triangles, so that the sums are reproducible.
             hits.sort_by_key(|h| h.number);
             hits.chunk_by(|a, b| a.number == b.number)
                 .map(cell_of)
@@ -92,7 +93,7 @@ fn add_hits(
     let normal = axes.normal();
     for z in zs {
         for y in ys.clone() {
-            // A row is crossed where the plane is: the cells beside it need no test.
+            // A row is crossed at the plane; cells farther away need no test.
             for x in crossed(grid, t.corners[0], normal, xs.clone(), y, z) {
                 let (low, high) = grid.corners([x, y, z]);
                 let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -116,7 +117,7 @@ fn add_hits(
     }
 }
 
-/// The cells of a row between which the plane through `p` lies, with one more on each side.
+/// The cells of a row that the plane through `p` crosses, with one more on each side.
 fn crossed(grid: &Grid, p: DVec3, normal: DVec3, xs: Range<u32>, y: u32, z: u32) -> Range<u32> {
     let (low, high) = grid.corners([xs.start, y, z]);
     let along = normal.x * 1e6;
@@ -137,7 +138,8 @@ fn crossed(grid: &Grid, p: DVec3, normal: DVec3, xs: Range<u32>, y: u32, z: u32)
     found.start.max(xs.start)..found.end.min(xs.end)
 }
 
-/// The hit with the colour, normal and area of the triangle inside the cell; none where its mask lets all through.
+/// The hit with the colour, normal and area of the triangle inside the cell; `None` if its mask is
+/// transparent.
 fn filled(
     mut hit: Hit,
     t: &Triangle,
@@ -147,7 +149,7 @@ fn filled(
     let mut polygon = clip(t.corners, low, high);
     let touches = polygon.is_empty();
     if touches {
-        // Only a border is touched: the nearest thing to a piece inside is the triangle's middle.
+        // Only the boundary is touched: use the triangle's centroid.
         let position = (t.corners[0] + t.corners[1] + t.corners[2]) / 3.0;
         polygon.push(Corner {
             position,
@@ -158,7 +160,7 @@ fn filled(
     let direction = n.normalize_or_zero();
     let [a, b, c] = t.uv;
     let [u, v, w] = t.uv.map(|uv| surfaces.set(t.material, uv));
-    // Texels for each square metre of the triangle.
+    // Texels per square metre of the triangle.
     let density =
         (v - u).perp_dot(w - u).abs() * surfaces.texels(t.material) / n.length().max(1e-30) as f32;
     let cutoff = surfaces.cutoff(t.material);
@@ -198,8 +200,8 @@ fn filled(
     Some(hit)
 }
 
-/// Places to look at a clipped triangle, as weights of its corners, and the area that each stands for (m^2): the middles of
-/// a fan's triangles, each cut in four where it has a texture. At least a trace of area, for what only touches.
+/// Sample positions on a clipped triangle as barycentric weights, and their areas [m^2]: centroids
+/// of a fan, each split in four for textures. A minimum area is used for touching triangles.
 fn samples(polygon: &[Corner], direction: DVec3, textured: bool) -> Vec<(DVec3, f64)> {
     const TRACE: f64 = 1e-18;
     let mut list = Vec::new();

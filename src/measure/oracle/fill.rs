@@ -1,17 +1,18 @@
-//! Flood fill from outside a volume: what a closed surface of cells keeps out.
+//! Flood fill from outside a volume, to find cells enclosed by a closed surface.
 
 use super::grid::Grid;
 
-/// Cells that count as beside each other.
+/// Connectivity of cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Neighbours {
-    /// Cells with a common face.
+    /// Cells that share a face.
     Six,
-    /// Cells with a common face, edge or corner.
+    /// Cells that share a face, edge or corner.
     TwentySix,
 }
 
-/// For each cell by its number, whether a way from outside the grid leads there that avoids `blocked`.
+/// For each cell by index, whether it is reachable from outside the grid without crossing
+/// `blocked`.
 pub fn flood(grid: &Grid, blocked: &[bool], neighbours: Neighbours) -> Vec<bool> {
     let size = grid.size().map(|n| n as i32);
     let steps: Vec<[i32; 3]> = (0..27i32)
@@ -38,7 +39,7 @@ pub fn flood(grid: &Grid, blocked: &[bool], neighbours: Neighbours) -> Vec<bool>
             }
         }
     }
-    // Breadth first: the front stays as small as a surface.
+    // Breadth first, so that the front stays as small as a surface.
     let mut next = Vec::new();
     while !front.is_empty() {
         for cell in front.drain(..) {

@@ -1,23 +1,24 @@
-//! Where the cells of a volume lie.
+//! The grid of a volume's cells.
 
 use glam::DVec3;
 use std::ops::Range;
 
-/// Most cells along an axis: numbers of cells then fit 30 bits.
+/// Maximum cells along an axis: cell indices fit 30 bits.
 const MAX_CELLS: usize = 1024;
 
-/// Boxes between borders, which need not be even.
+/// A rectilinear grid; spacing may vary.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// World coordinates (m) of the borders along x, y and z, rising, one more than cells.
+    /// World coordinates of the cell borders along x, y and z, increasing, one more than cells [m].
     borders: [Vec<f64>; 3],
 }
 
 impl Grid {
-    /// A grid between borders.
+    /// A grid from its borders.
     ///
     /// # Errors
-    /// Fewer than 1 or more than 1024 cells along an axis; borders that do not rise or are no numbers.
+    /// Fewer than 1 or more than 1024 cells along an axis; borders that do not increase or are not
+    /// finite.
     pub fn new(borders: [Vec<f64>; 3]) -> Result<Grid, String> {
         for (axis, list) in ["x", "y", "z"].iter().zip(&borders) {
             if !(2..=MAX_CELLS + 1).contains(&list.len()) {
@@ -40,18 +41,18 @@ impl Grid {
         [0, 1, 2].map(|axis| self.borders[axis].len() as u32 - 1)
     }
 
-    /// Cells in all.
+    /// Total number of cells.
     pub fn count(&self) -> usize {
         self.size().iter().map(|n| *n as usize).product()
     }
 
-    /// The number of a cell: x + width * (y + height * z).
+    /// The index of a cell: x + width * (y + height * z).
     pub fn number(&self, [x, y, z]: [u32; 3]) -> u32 {
         let [width, height, _] = self.size();
         x + width * (y + height * z)
     }
 
-    /// The place of a cell by its number.
+    /// The coordinates of a cell by index.
     pub fn place(&self, number: u32) -> [u32; 3] {
         let [width, height, _] = self.size();
         [
@@ -61,13 +62,13 @@ impl Grid {
         ]
     }
 
-    /// The lowest and highest corner of a cell, m.
+    /// Lowest and highest corner of a cell [m].
     pub fn corners(&self, cell: [u32; 3]) -> (DVec3, DVec3) {
         let at = |i: u32| [0, 1, 2].map(|axis| self.borders[axis][(cell[axis] + i) as usize]);
         (DVec3::from_array(at(0)), DVec3::from_array(at(1)))
     }
 
-    /// Cells along an axis that [low, high] (m) touches, and one more on each side, so that rounding loses none.
+    /// Cells along an axis that [low, high] touches [m], plus one on each side against rounding.
     pub fn touched(&self, axis: usize, low: f64, high: f64) -> Range<u32> {
         let borders = &self.borders[axis];
         let last = borders.len() - 1;
@@ -80,7 +81,7 @@ impl Grid {
         }
     }
 
-    /// Edges (m) of the cell at a point, or of the nearest one.
+    /// Edge lengths of the cell at a point, or of the nearest cell [m].
     pub(crate) fn edges_at(&self, p: DVec3) -> DVec3 {
         let edge = |axis: usize| {
             let borders = &self.borders[axis];

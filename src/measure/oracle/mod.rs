@@ -1,7 +1,8 @@
-//! Exact voxelization on the processor, in f64: what a voxelizer's cells are compared with.
+//! Exact voxelization on the CPU in f64, the reference for voxelizers.
 //!
-//! A cell is *exact* when a triangle overlaps it. Whether it does is decided by separating axes (Akenine-Moeller 2001);
-//! cells within 1e-5 of their edge of the decision are *borderline* and count neither for nor against a voxelizer.
+//! A cell is *exact* if a triangle overlaps it, by the separating axis test (Akenine-Moeller 2001).
+//! Cells within 1e-5 of their edge of the decision are *borderline* and count neither for nor
+//! against a voxelizer.
 mod clip;
 mod compare;
 mod cubes;

@@ -1,22 +1,22 @@
-//! Whether a triangle overlaps a box.
+//! Triangle-box overlap test.
 
 use glam::DVec3;
 
-/// Boxes that grow or shrink by this part of their edge decide otherwise: borderline.
+/// Relative change of a box that makes an overlap borderline if the decision changes.
 const MARGIN: f64 = 1e-5;
 
-/// Whether a triangle overlaps a cell.
+/// Overlap of a triangle and a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Overlap {
-    /// Not even a cell wider by 1e-5 of its edge on each side.
+    /// Not even a cell wider by 1e-5 of its edge on each side overlaps.
     Outside,
-    /// Too near to say: rounding may decide either way.
+    /// Undecided: rounding may decide either way.
     Borderline,
-    /// Even a cell narrower by 1e-5 of its edge on each side.
+    /// Even a cell narrower by 1e-5 of its edge on each side overlaps.
     Inside,
 }
 
-/// A direction that may separate: with the triangle's extent along it.
+/// A candidate separating axis with the triangle's extent along it.
 #[derive(Clone, Copy)]
 struct Axis {
     direction: DVec3,
@@ -24,15 +24,16 @@ struct Axis {
     high: f64,
 }
 
-/// A triangle's 13 directions that may separate it from a box: the box's three, the triangle's normal, and the cross
-/// products of their edges (Akenine-Moeller 2001, Fast 3D Triangle-Box Overlap Testing).
+/// The 13 candidate axes that separate a triangle from a box: three of the box, the triangle's
+/// normal, and the cross products of their edges (Akenine-Moeller 2001, Fast 3D Triangle-Box
+/// Overlap Testing).
 pub struct Axes {
-    /// x, y, z, the normal, then for each of the triangle's edges its cross product with x, y and z.
+    /// x, y, z, the normal, then each triangle edge's cross products with x, y and z.
     axes: [Axis; 13],
 }
 
 impl Axes {
-    /// Prepares a triangle, world coordinates in m.
+    /// Prepares a triangle in world coordinates [m].
     pub fn new(t: [DVec3; 3]) -> Axes {
         let edges = [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
         let units = [DVec3::X, DVec3::Y, DVec3::Z];
@@ -43,7 +44,8 @@ impl Axes {
         let mut directions = [DVec3::ZERO; 13];
         directions[..3].copy_from_slice(&units);
         let normal = edges[0].cross(-edges[2]);
-        // What is left of a direction after cancellation is noise and must not separate; zero separates nothing.
+        // Directions that vanish by cancellation are noise and must not separate; a zero vector
+        // never does.
         if normal.length_squared() > 1e-24 * longest * longest {
             directions[3] = normal;
         }
@@ -66,7 +68,7 @@ impl Axes {
         }
     }
 
-    /// The triangle's normal, of any length.
+    /// The triangle's normal, not normalised.
     pub fn normal(&self) -> DVec3 {
         self.axes[3].direction
     }

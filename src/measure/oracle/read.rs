@@ -1,4 +1,4 @@
-//! The voxels of a session, as its graph declares them.
+//! Reads the voxels of a session, as its graph declares them.
 
 use super::grid::Grid;
 use crate::diagnostics::Diagnostic;
@@ -7,26 +7,26 @@ use crate::graph::file::ViewDecl;
 use crate::lab::{LabError, Session, Texels};
 use glam::Vec3;
 
-/// A cell that a voxelizer filled.
+/// A filled cell of a voxelizer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Voxel {
-    /// Its number in the grid.
+    /// Index in the grid.
     pub number: u32,
     /// Linear base colour.
     pub color: Vec3,
-    /// 0 to 1.
+    /// Opacity, 0 to 1.
     pub opacity: f32,
-    /// Unit length, or 0 where there is none.
+    /// Unit normal, or 0 without one.
     pub normal: Vec3,
 }
 
-/// The tool of graphs whose voxels can be compared: [`resources`] says what it is told.
+/// Name of the graph's tool entry that declares its voxels; [`resources`] lists its fields.
 const TOOL: &str = "voxels";
 
-/// Names of what holds a graph's voxels.
+/// Names of the resources that hold a graph's voxels.
 #[derive(Clone, Debug)]
 struct Resources {
-    /// 3D texture whose first channel is not zero in occupied cells.
+    /// 3D texture with a nonzero first channel in occupied cells.
     occupied: String,
     /// 3D texture of linear base colour; alpha is opacity.
     color: String,
@@ -38,7 +38,7 @@ struct Resources {
     borders: String,
 }
 
-/// What a graph says of its voxels; nothing where it makes none.
+/// The voxel resources of a graph; `None` if it makes no voxels.
 fn resources(graph: &Graph) -> Result<Option<Resources>, Diagnostic> {
     let Some(tool) = graph.tool(TOOL) else {
         return Ok(None);
@@ -98,12 +98,12 @@ pub fn makes_voxels(graph: &Graph) -> bool {
     graph.tool(TOOL).is_some()
 }
 
-/// What is wrong with what a graph says of its voxels.
+/// The error in a graph's declaration of its voxels.
 pub fn mistake(graph: &Graph) -> Option<Diagnostic> {
     resources(graph).err()
 }
 
-/// Ways of making voxels that a graph says are worth comparing.
+/// Voxelization settings that a graph suggests for comparison.
 pub fn modes(graph: &Graph) -> impl Iterator<Item = &ViewDecl> {
     graph
         .tool(TOOL)
@@ -112,7 +112,7 @@ pub fn modes(graph: &Graph) -> impl Iterator<Item = &ViewDecl> {
         .map(|mode| &mode.value)
 }
 
-/// What a session must keep for [`read`].
+/// Resources that a session must keep for [`read`].
 ///
 /// # Errors
 /// The graph makes no voxels.
@@ -121,10 +121,10 @@ pub fn wanted(graph: &Graph) -> Result<Vec<String>, LabError> {
     Ok(vec![v.occupied, v.color, v.normal, v.borders])
 }
 
-/// The grid and the voxels of the last frame, in order of numbers.
+/// The grid and the voxels of the last frame, sorted by index.
 ///
 /// # Errors
-/// The graph makes no voxels; cells that are no boxes; the device was lost.
+/// The graph makes no voxels; the cells are not boxes; the device was lost.
 pub fn read(session: &mut Session) -> Result<(Grid, Vec<Voxel>), LabError> {
     let v = declared(&session.graph)?;
     let occupied = session.texels(&v.occupied, 0, 0)?;
@@ -158,7 +158,7 @@ pub fn read(session: &mut Session) -> Result<(Grid, Vec<Voxel>), LabError> {
     Ok((grid, voxels))
 }
 
-/// Where the cells of the last frame lie.
+/// The grid of the last frame.
 pub fn grid(session: &mut Session) -> Result<Grid, LabError> {
     let v = declared(&session.graph)?;
     let index = session.graph.texture(&v.occupied);
@@ -172,7 +172,8 @@ fn grid_in(session: &mut Session, v: &Resources, cells: [u32; 3]) -> Result<(Gri
     grid_of(&borders, cells).map_err(LabError::Request)
 }
 
-/// Texels by number, counted from texel `before`. Only those are turned into floats: a whole volume of them can take gigabytes.
+/// Texels by index from `before` on. Only these are converted to floats, because a whole volume can
+/// take gigabytes.
 fn texels_at(
     session: &mut Session,
     name: &str,

@@ -1,9 +1,9 @@
-//! Classes of triangles that voxelizers find hard in different ways.
+//! Classes of triangles with different difficulties for voxelizers.
 
 use super::grid::Grid;
 use glam::DVec3;
 
-/// The classes; a triangle belongs to the first whose definition fits.
+/// The classes; a triangle belongs to the first one that fits.
 pub const SHAPES: [&str; 6] = [
     "sub-voxel",
     "obtuse",

@@ -1,20 +1,20 @@
-//! Base colours, sampled on the processor.
+//! Base colours, sampled on the CPU.
 
 use crate::scene::{Lookup, Scene, Texture};
 use glam::{Vec2, Vec4};
 use std::borrow::Cow;
 
-/// What surfaces look like: materials, and textures as linear colours can be read from them.
+/// Materials and linear textures of a scene.
 pub struct Surfaces<'s> {
     scene: &'s Scene,
-    /// By texture of the scene; only those that are a base colour. RGBA8.
+    /// Textures by index, only base colours, as RGBA8.
     textures: Vec<Option<Cow<'s, Texture>>>,
     /// sRGB byte to linear.
     linear: [f32; 256],
 }
 
 impl<'s> Surfaces<'s> {
-    /// Decodes what the scene's materials use as base colours.
+    /// Decodes the base colour textures of the scene's materials.
     pub fn new(scene: &'s Scene) -> Surfaces<'s> {
         let mut textures = vec![None; scene.textures.len()];
         for index in scene.materials.iter().filter_map(|m| m.base_color_texture) {
@@ -48,7 +48,7 @@ impl<'s> Surfaces<'s> {
         }
     }
 
-    /// Alpha below which a material is not there; 0: it has no mask.
+    /// Alpha cutoff of a material; 0 without a mask.
     pub fn cutoff(&self, material: u32) -> f32 {
         self.scene
             .materials
@@ -56,7 +56,7 @@ impl<'s> Surfaces<'s> {
             .map_or(0.0, |m| m.alpha_cutoff)
     }
 
-    /// Texels of the base colour's finest level in a square of texture coordinates; 0 without a texture.
+    /// Number of texels of the base colour's finest level; 0 without a texture.
     pub fn texels(&self, material: u32) -> f32 {
         self.texture(material)
             .map_or(0.0, |t| t.width as f32 * t.height as f32)
@@ -71,7 +71,7 @@ impl<'s> Surfaces<'s> {
         self.textures.get(index as usize)?.as_deref()
     }
 
-    /// The texture coordinates of the base colour, of both sets.
+    /// The coordinate set of the base colour.
     pub fn set(&self, material: u32, sets: Vec4) -> Vec2 {
         self.lookup(material).set(sets)
     }
@@ -83,7 +83,8 @@ impl<'s> Surfaces<'s> {
             .map_or_else(Lookup::default, |m| m.lookups.base_color)
     }
 
-    /// Linear base colour and alpha, without the colour of vertices; `level` counts halvings of the texture, the nearest one is interpolated.
+    /// Linear base colour and alpha without vertex colours. `level` is the mip level; the nearest
+    /// one is filtered bilinearly.
     pub fn base_color(&self, material: u32, sets: Vec4, level: f32) -> Vec4 {
         let uv = self.lookup(material).place(sets);
         let factor = self

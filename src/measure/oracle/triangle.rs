@@ -6,20 +6,20 @@ use glam::{DVec3, Mat3, Vec3, Vec4};
 /// A triangle in the world.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle {
-    /// Corners, m.
+    /// Corners [m].
     pub corners: [DVec3; 3],
     /// Shading normals, unit length.
     pub normals: [Vec3; 3],
     /// Both sets of texture coordinates.
     pub uv: [Vec4; 3],
-    /// Colours of the vertices.
+    /// Vertex colours.
     pub colors: [Vec4; 3],
     /// Index of the scene's material.
     pub material: u32,
 }
 
-/// All triangles of a scene at a time (s), instance by instance, in the shaders' world. Corners are rounded to f32, as they
-/// are on the device.
+/// All triangles of a scene at a time [s], instance by instance, in the shaders' world. Corners are
+/// rounded to f32, as on the device.
 pub fn triangles_of(scene: &Scene, time: f64) -> Vec<Triangle> {
     let origin = scene.origin().extend(0.0);
     let mut list = Vec::with_capacity(scene.triangle_count());

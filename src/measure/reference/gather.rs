@@ -1,4 +1,4 @@
-//! Gathers samples until a goal is reached; what has been gathered is kept on the way.
+//! Gathers samples until a goal is reached and saves them on the way.
 
 use super::store::{self, Sums};
 use super::{Reference, key};
@@ -11,30 +11,31 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// When a reference is good enough.
+/// Stopping criterion of a reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// So many samples of every pixel, rounded up to a multiple of `store::BLOCK`.
+    /// Samples per pixel, rounded up to a multiple of `store::BLOCK`.
     Samples(u64),
-    /// Until relMSE of the total against the converged reference, as estimated from its halves, is at most this.
+    /// Until the relMSE of the total against the converged reference, estimated from its halves, is
+    /// at most this.
     Noise(f64),
 }
 
 /// Progress towards the goal.
 #[derive(Clone, Copy, Debug)]
 pub struct Gathered {
-    /// Samples of every pixel so far.
+    /// Samples per pixel so far.
     pub samples: u64,
-    /// Samples that will be enough, as far as can be told.
+    /// Estimated samples at the goal.
     pub goal: u64,
     /// Estimated relMSE of the total against the converged reference.
     pub noise: f64,
 }
 
-/// Time between two files on the disk.
+/// Interval between saves.
 const KEEP_EVERY: Duration = Duration::from_secs(30);
 
-/// Most samples when noise is the goal: it may not fall, where a material or a light is impossible.
+/// Maximum samples for a noise goal, which may be unreachable.
 const MOST_SAMPLES: u64 = 1 << 20;
 
 /// Gathers the reference of an experiment, from where an earlier run stopped. `scene` is lit as the experiment says.
@@ -56,15 +57,15 @@ pub fn gather(
         .reference(false)
 }
 
-/// Gathers one reference after another, each on what the one before it left: the compiled graph, its pipelines, and the
-/// scene on the device. What it gathers are the bits that [`gather`] gathers.
+/// Gathers references in sequence and reuses the compiled graph, its pipelines, and the uploaded
+/// scene. The bits are those of [`gather`].
 #[derive(Default)]
 pub struct Tracer {
     loaded: Option<Loaded>,
     shared: Option<ReusableParts>,
 }
 
-/// Sums that were gathered.
+/// Gathered sums.
 struct Traced {
     sums: Sums,
     folder: PathBuf,
@@ -79,7 +80,7 @@ impl Traced {
 }
 
 impl Tracer {
-    /// [`gather`], with the means of both halves of the samples.
+    /// [`gather`] with the means of both sample halves.
     pub fn gather(
         &mut self,
         lab: &Lab,
@@ -145,7 +146,7 @@ impl Tracer {
             frame(lab, &mut session, &mut sums, per_frame)?;
             now = state(&sums, goal)?;
             let stop = progress(now).is_break();
-            // Whole blocks only: then the sums do not depend on where a run was stopped.
+            // Whole blocks only, so that the sums do not depend on interruptions.
             let whole = sums.samples.is_multiple_of(store::BLOCK);
             if whole && (stop || now.samples >= now.goal || kept.elapsed() > KEEP_EVERY) {
                 store::write(&folder, &sums, &traced, &lab.gpu.info)?;
@@ -156,7 +157,7 @@ impl Tracer {
             if stop && whole {
                 break;
             }
-            // Where a block takes long, every one before this was kept.
+            // If a block takes long, all earlier ones have been saved.
             if stop && all_kept {
                 let before = store::read(&folder, traced.size, &loaded.graph)?;
                 let block = store::BLOCK;
@@ -175,7 +176,7 @@ impl Tracer {
     }
 }
 
-/// How far the sums are from a goal.
+/// Progress of the sums towards a goal.
 fn state(sums: &Sums, goal: Goal) -> Result<Gathered, LabError> {
     let noise = if sums.samples >= 2 {
         sums.noise("total")? / 4.0
@@ -188,7 +189,7 @@ fn state(sums: &Sums, goal: Goal) -> Result<Gathered, LabError> {
         Goal::Noise(most) if noise <= most && sums.samples.is_multiple_of(store::BLOCK) => {
             sums.samples
         }
-        // The square of the error falls with the number of samples.
+        // The squared error is inversely proportional to the number of samples.
         Goal::Noise(most) => {
             let factor = if noise.is_finite() && most > 0.0 {
                 (noise / most).clamp(1.0, 1e6)
@@ -210,8 +211,8 @@ fn state(sums: &Sums, goal: Goal) -> Result<Gathered, LabError> {
     })
 }
 
-/// Samples that one submission takes of every pixel: a divisor of the block, few on processors without a GPU, where a
-/// frame would take minutes. Depends on nothing that changes between runs.
+/// Samples per pixel and submission: a divisor of the block, few on CPUs, where a frame would take
+/// minutes. Depends on nothing that changes between runs.
 fn samples_per_frame(kind: &str, (width, height): (u32, u32)) -> u64 {
     let pixels = u64::from(width) * u64::from(height);
     let budget: u64 = if kind == "cpu" { 1 << 19 } else { 1 << 26 };

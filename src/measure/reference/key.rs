@@ -1,4 +1,4 @@
-//! What a reference depends on, as an experiment and as one number.
+//! The inputs of a reference, as an experiment and as a hash.
 
 use crate::experiment::Experiment;
 use crate::files::{content_id, hex};
@@ -12,10 +12,10 @@ use std::sync::Arc;
 /// The graph that traces references.
 pub const GRAPH: &str = "reference.ron";
 
-/// Parameters that say which samples are taken, not of what.
+/// Parameters that select samples without changing the expected value.
 const WHICH_SAMPLES: [&str; 2] = ["samples", "first_sample"];
 
-/// Group of the parameters that change the display-encoded picture alone.
+/// Group of the parameters that affect only the display-encoded picture.
 const DISPLAY: &str = "Display";
 
 /// The experiment of the reference of another: the same scene, camera, size and time under [`GRAPH`]. What the other
@@ -35,7 +35,7 @@ pub fn experiment_for(
     )
 }
 
-/// [`experiment_for`] with the graph of references at hand.
+/// [`experiment_for`] with a loaded reference graph.
 pub(super) fn traced_by(
     loaded: &Loaded,
     experiment: &Experiment,
@@ -51,12 +51,12 @@ pub(super) fn traced_by(
         name.value != "bounces" && !WHICH_SAMPLES.contains(&name.value.as_str())
     });
     traced.set("bounces", &bounces.to_string());
-    // Told now, with the place where it stands.
+    // Reports errors now, with their position.
     params_of(graph, &traced)?;
     Ok(traced)
 }
 
-/// SHA-256 of all passes' compiled shaders, hexadecimal.
+/// SHA-256 of the compiled shaders of all passes, hexadecimal.
 pub(super) fn shaders(loaded: &Loaded) -> String {
     let mut hash = Sha256::new();
     for stage in loaded.linked.iter().flat_map(|link| &link.stages) {
@@ -65,8 +65,8 @@ pub(super) fn shaders(loaded: &Loaded) -> String {
     hex(&hash.finalize())
 }
 
-/// 16 hexadecimal digits of everything that the samples of an experiment of [`GRAPH`] depend on: the compiled shaders,
-/// the scene's content, camera, size, time, and parameters.
+/// 16 hexadecimal digits of a hash over all inputs of the samples of an experiment of [`GRAPH`]:
+/// compiled shaders, scene content, camera, size, time, and parameters.
 pub(super) fn key(
     traced: &Experiment,
     loaded: &Loaded,

@@ -1,5 +1,5 @@
-//! Ground truth for an experiment: the pictures of `passes/reference.ron`, gathered sample by sample, kept under the
-//! content of what they depend on.
+//! Path-traced references: the pictures of `passes/reference.ron`, gathered progressively and
+//! stored under a hash of their inputs.
 
 mod gather;
 mod key;
@@ -19,24 +19,24 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Turns of a path that hold all light that matters: what methods are compared with where nothing else is asked for.
+/// Default path length of references [bounces], enough for all light that matters.
 pub(crate) const ALL_BOUNCES: u32 = 64;
 
-/// A reference picture with its parts.
+/// A reference picture with its light components.
 #[derive(Clone, Debug)]
 pub struct Reference {
     /// Width and height, pixels.
     pub size: (u32, u32),
-    /// Samples of every pixel.
+    /// Samples per pixel.
     pub samples: u64,
-    /// Parts of the graph by name.
+    /// Light components by graph name.
     pub parts: BTreeMap<String, ReferencePart>,
     /// Folder of the reference.
     pub folder: PathBuf,
 }
 
 impl Reference {
-    /// What it takes of memory.
+    /// Memory of the pictures [bytes].
     pub fn bytes(&self) -> usize {
         let pictures = |p: &ReferencePart| if p.halves.is_some() { 3 } else { 1 };
         self.parts
@@ -46,24 +46,26 @@ impl Reference {
     }
 }
 
-/// A part of a reference.
+/// A light component of a reference.
 #[derive(Clone, Debug)]
 pub struct ReferencePart {
     /// Mean of all samples.
     pub mean: Linear,
-    /// What its own noise scores.
+    /// Noise of the reference itself.
     pub noise: Noise,
-    /// Means of the even and of the odd samples, where [`Tracer::gather`] made it: they take twice the memory again.
+    /// Means of the even and the odd samples, if made by [`Tracer::gather`]; they need twice the
+    /// memory again.
     pub halves: Option<[Linear; 2]>,
 }
 
-/// A number of the shaders that references are made with, 64 hexadecimal digits.
+/// Hash of the reference graph's shaders, 64 hexadecimal digits.
 pub fn shaders(home: &Workspace) -> Result<String, LabError> {
     let loaded = home.load(GRAPH).map_err(LabError::Input)?;
     Ok(key::shaders(&loaded))
 }
 
-/// The reference of an experiment for so many bounces, if it has been gathered. `scene` is lit as the experiment says.
+/// The reference of an experiment with this number of bounces, if it has been gathered. `scene` has
+/// the experiment's lighting.
 pub fn find(
     home: &Workspace,
     experiment: &Experiment,
@@ -80,7 +82,7 @@ pub fn find(
     )
 }
 
-/// The reference in a folder, if its sums are there.
+/// The reference in a folder, if its sums exist.
 ///
 /// # Errors
 /// Files that are damaged, or of another size or graph.

@@ -1,5 +1,5 @@
-//! Sums of samples, and their files: `sums-N.exr` with a layer for each part and half, and `reference.json`, which
-//! names the one that counts.
+//! Sums of samples and their files: `sums-N.exr` with a layer per component and half, and
+//! `reference.json`, which names the current one.
 
 use super::{Reference, ReferencePart};
 use crate::experiment::Experiment;
@@ -19,22 +19,22 @@ use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::Path;
 
-/// Samples are gathered by so many: a whole number of them is kept.
+/// Samples per block; only whole blocks are saved.
 pub const BLOCK: u64 = 32;
 
 /// Version of `reference.json`.
 pub const SCHEMA: &str = "conelab-reference-2";
 
-/// The texture of the reference graph with the sums of a part, a layer for each half.
+/// The reference graph's texture with the sums of a component, one layer per half.
 pub fn sum_texture(part: &str) -> String {
     format!("{part}Sum")
 }
 
-/// What `reference.json` holds.
+/// The content of `reference.json`.
 #[derive(Debug, Deserialize, Serialize)]
 struct Record {
     schema: String,
-    /// The file with the sums.
+    /// File of the sums.
     sums: String,
     /// SHA-256 of that file, hexadecimal.
     sha256: String,
@@ -42,7 +42,7 @@ struct Record {
     size: (u32, u32),
     /// relMSE between the halves, by part.
     noise: BTreeMap<String, f64>,
-    /// For people: where it comes from.
+    /// Origin of the reference, for display.
     experiment: String,
     scene: String,
     params: BTreeMap<String, String>,
@@ -51,7 +51,7 @@ struct Record {
 }
 
 impl Record {
-    /// Whether the file with the sums is one of this folder.
+    /// Whether the file with the sums belongs to this folder.
     fn names_sums(&self) -> bool {
         self.sums.starts_with("sums-") && !self.sums.contains(['/', '\\'])
     }
@@ -62,9 +62,9 @@ impl Record {
 pub struct Sums {
     /// Width and height, pixels.
     pub size: (u32, u32),
-    /// Samples of every pixel, both halves together; sample number 0 and other even ones are in half 0.
+    /// Samples per pixel of both halves together; sample 0 and other even ones belong to half 0.
     pub samples: u64,
-    /// By part: for each half RGB and the number of samples, of every pixel.
+    /// Per component and half: RGB sum and sample count of every pixel.
     parts: BTreeMap<String, [Vec<[f32; 4]>; 2]>,
 }
 
@@ -98,7 +98,7 @@ impl Sums {
         }
     }
 
-    /// Means of a part, over some halves.
+    /// Mean of a component over the given halves.
     fn mean(&self, part: &str, kind: Kind, halves: &[usize]) -> Linear {
         let pixels = self.size.0 as usize * self.size.1 as usize;
         let mut sum = vec![[0f64; 4]; pixels];
@@ -123,13 +123,13 @@ impl Sums {
         }
     }
 
-    /// relMSE of the even samples' mean against the odd ones'.
+    /// relMSE of the even samples' mean against that of the odd ones.
     pub fn noise(&self, part: &str) -> Result<f64, LabError> {
         let [even, odd] = [0, 1].map(|half| self.mean(part, Kind::Radiance, &[half]));
         relmse(&even, &odd).map_err(|e| wrong(part, &e))
     }
 
-    /// Means and noise of all parts; `halves`: also the means of the even and of the odd samples.
+    /// Means and noise of all components; `halves` adds the means of the even and the odd samples.
     pub fn reference(
         &self,
         graph: &Graph,
@@ -175,7 +175,7 @@ fn failed(path: &Path, why: impl std::fmt::Display) -> LabError {
     LabError::Request(format!("reference '{}': {why}", path.display()))
 }
 
-/// Writes sums into a folder, in place of those that `reference.json` names.
+/// Writes sums into a folder and replaces those that `reference.json` names.
 pub(super) fn write(
     folder: &Path,
     sums: &Sums,
@@ -212,8 +212,8 @@ pub(super) fn write(
     let text = serde_json::to_vec_pretty(&record).map_err(|e| failed(&json, e))?;
     let replaced = read_record(&json).ok().flatten();
     crate::files::write_whole(&json, &text)?;
-    // Other sums may belong to a process that has not written its reference.json yet. A file that cannot be deleted
-    // only takes space.
+    // Other sums may belong to a process that has not written its reference.json yet. A file that
+    // cannot be deleted only costs space.
     if let Some(old) = replaced.filter(|old| old.names_sums() && old.sums != record.sums) {
         let _ = std::fs::remove_file(folder.join(old.sums));
     }
@@ -243,7 +243,7 @@ fn encode(sums: &Sums) -> Result<Vec<u8>, exr::error::Error> {
     }
     let mut out = Cursor::new(Vec::new());
     let window = exr::meta::header::ImageAttributes::with_size(size);
-    // Threads would write the chunks in whatever order they were compressed: the same sums must be the same bytes.
+    // Parallel compression would write chunks in varying order; equal sums must give equal files.
     Image::from_layers(window, layers)
         .write()
         .non_parallel()
@@ -261,7 +261,7 @@ fn read_record(json: &Path) -> Result<Option<Record>, LabError> {
         .map_err(|e| failed(json, format!("{e}; delete the folder")))
 }
 
-/// The sums in a folder; `None` without `reference.json`, or without the sums that it names.
+/// The sums in a folder; `None` without `reference.json` or without the file that it names.
 pub(super) fn read(
     folder: &Path,
     size: (u32, u32),
@@ -278,7 +278,7 @@ pub(super) fn read(
         ));
     }
     let file = folder.join(&record.sums);
-    // Another process may have deleted them after its own sums replaced these.
+    // Another process may have deleted them after replacing these sums.
     if std::fs::symlink_metadata(&file).is_err_and(|e| e.kind() == std::io::ErrorKind::NotFound) {
         return Ok(None);
     }
@@ -289,7 +289,7 @@ pub(super) fn read(
     }
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(&bytes), false)
         .map_err(|e| wrong(&e.to_string()))?;
-    // Before the texels: sizes decide how much memory is taken.
+    // Before the texels, because sizes decide the memory.
     let fits = |h: &exr::meta::header::Header| {
         (h.layer_size.width(), h.layer_size.height()) == (size.0 as usize, size.1 as usize)
             && h.channels.list.len() == 4
@@ -346,7 +346,7 @@ pub(super) fn read(
     Ok(Some(sums))
 }
 
-/// Writes the noise that the sums have into their description, if it says something else. Nobody computes with what it says.
+/// Updates the noise in the description, if it differs. Nothing depends on the stored value.
 fn keep_noise(json: &Path, mut record: Record, sums: &Sums) -> Result<(), LabError> {
     let noise: BTreeMap<String, f64> = sums
         .parts
@@ -367,19 +367,19 @@ fn keep_noise(json: &Path, mut record: Record, sums: &Sums) -> Result<(), LabErr
     }
     record.noise = noise;
     let text = serde_json::to_vec_pretty(&record).map_err(|e| failed(json, e))?;
-    // A folder that cannot be written to keeps it.
+    // A read-only folder keeps the old value.
     let _ = crate::files::write_whole(json, &text);
     Ok(())
 }
 
-/// Descriptions larger than this are not what was written.
+/// Larger descriptions are invalid [bytes].
 const MAX_JSON: u64 = 16 << 20;
 
-/// A file that is no larger than the sums of so many parts can be.
+/// Reads a file, unless it is larger than the sums of `parts` components.
 fn read_bounded(file: &Path, size: (u32, u32), parts: usize) -> Result<Vec<u8>, String> {
     let texels = u64::from(size.0) * u64::from(size.1) * 2 * parts as u64;
     let length = check_input(file, u64::MAX).map_err(|e| e.to_string())?;
-    // Compression may make noise a little larger.
+    // Compression may enlarge noise slightly.
     let most = texels * 32 + (1 << 20);
     if length > most {
         return Err(format!("it has {length} bytes, more than its samples take"));

@@ -1,4 +1,4 @@
-//! Finding captures, and clearing away what a killed program left of one.
+//! Lists captures, and removes incomplete ones of killed programs.
 
 use super::{EXPERIMENT, MANIFEST, Manifest};
 use std::path::{Path, PathBuf};
@@ -10,13 +10,14 @@ pub struct Summary {
     pub name: String,
     /// Folder of the capture.
     pub folder: PathBuf,
-    /// What it says about itself, or what is wrong with it.
+    /// Its manifest, or the error of reading it.
     pub manifest: Result<Manifest, String>,
-    /// The picture to show.
+    /// The picture to display.
     pub picture: Option<PathBuf>,
 }
 
-/// The captures of a folder by name, broken ones too. What is in the making, or no capture, is left out.
+/// The captures in a folder by name, including damaged ones. Incomplete captures and other folders
+/// are skipped.
 pub fn list(folder: &Path) -> Vec<Summary> {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return Vec::new();
@@ -53,8 +54,8 @@ fn summary(folder: &Path) -> Option<Summary> {
     })
 }
 
-/// Removes what programs that no longer run have left of captures, and returns how many folders that were. Where the
-/// running programs cannot be known (no `/proc`), nothing is removed.
+/// Removes incomplete captures of programs that no longer run, and returns their number. Removes
+/// nothing if running programs are unknown (no `/proc`).
 pub fn sweep_partials(folder: &Path) -> usize {
     let processes = Path::new("/proc");
     if !processes.join("self").exists() {
@@ -72,7 +73,7 @@ pub fn sweep_partials(folder: &Path) -> usize {
         .count()
 }
 
-/// The process that makes, or made, the capture in a folder of this name.
+/// The process that makes, or made, the incomplete capture in a folder of this name.
 fn partial_of(name: &str) -> Option<u32> {
     let (_, rest) = name.strip_prefix('.')?.split_once(".partial-")?;
     rest.split_once('-')?.0.parse().ok()

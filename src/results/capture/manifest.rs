@@ -1,4 +1,4 @@
-//! `capture.json`: what a capture says about itself. It may come from anywhere and is not trusted.
+//! `capture.json`: the description of a capture. Its content is not trusted.
 
 use super::{EXPERIMENT, MANIFEST, SOURCES, failed};
 use crate::experiment::check_size;
@@ -16,15 +16,15 @@ pub const SCHEMA: &str = "conelab-capture-1";
 
 /// Largest manifest, bytes.
 const MAX_BYTES: u64 = 4 << 20;
-/// Most files of a capture.
+/// Maximum files of a capture.
 const MAX_FILES: usize = 10_000;
-/// Most frames a capture may ask a replay to run.
+/// Maximum frames of a replay.
 const MAX_FRAMES: usize = 1_000_000;
 
 /// The scene of a capture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneRecord {
-    /// Built-in name, or path as it was given.
+    /// Built-in name, or path as given.
     pub spec: String,
     pub name: String,
     /// SHA-256 of its content ([`super::scene_hash`]).
@@ -42,29 +42,29 @@ pub struct Image {
     pub layer: u32,
 }
 
-/// What `capture.json` holds.
+/// The content of `capture.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// [`SCHEMA`].
     pub(crate) schema: String,
     pub(crate) version: String,
-    /// Device.
+    /// Name of the device.
     pub device: String,
     /// Driver and its version.
     pub driver: String,
-    /// When it was taken, RFC 3339, UTC.
+    /// Time of capture, RFC 3339, UTC.
     pub when: String,
     /// Name of the experiment.
     pub experiment: String,
     /// Name of the graph's file.
     pub graph: String,
-    /// Scene.
+    /// The rendered scene.
     pub scene: SceneRecord,
     /// Width and height, pixels.
     pub size: [u32; 2],
-    /// Frames run; the pictures are of the last.
+    /// Rendered frames; the pictures show the last one.
     pub frames: usize,
-    /// Time from frame to frame, s.
+    /// Time step between frames [s].
     pub step: f64,
     pub(crate) images: Vec<Image>,
     /// SHA-256 of every other file, by path in the capture.
@@ -75,7 +75,7 @@ impl Manifest {
     /// Reads and checks a capture's manifest.
     ///
     /// # Errors
-    /// No such file, no manifest, a size beyond bounds, or a path that leads out of the folder.
+    /// A missing or invalid manifest; a size out of bounds; a path outside the folder.
     pub fn read(folder: &Path) -> Result<Manifest, LabError> {
         let path = folder.join(MANIFEST);
         let text = crate::files::read_input_text(&path, MAX_BYTES)
@@ -103,7 +103,7 @@ impl Manifest {
         for file in self.files.keys() {
             inside(folder, file)?;
         }
-        // Graphs and shaders name further files, which need not be in the list.
+        // Graphs and shaders include further files, which need not be listed.
         for link in below(&folder.join(SOURCES), &|kind| kind.is_symlink()).unwrap_or_default() {
             inside(folder, &format!("{SOURCES}/{link}"))?;
         }
@@ -128,7 +128,7 @@ impl Manifest {
     }
 }
 
-/// Whether a capture can be of so many frames, so far apart.
+/// Checks the number of frames and the time step of a capture.
 pub(super) fn check_frames(frames: usize, step: f64) -> Result<(), String> {
     if frames == 0 || frames > MAX_FRAMES || !step.is_finite() {
         return Err(format!(
@@ -138,7 +138,7 @@ pub(super) fn check_frames(frames: usize, step: f64) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether a path stays in the folder, links followed.
+/// Checks that a path stays in the folder after resolving links.
 fn inside(folder: &Path, file: &str) -> Result<(), String> {
     let path = Path::new(file);
     let plain = !file.is_empty() && path.components().all(|c| matches!(c, Component::Normal(_)));
@@ -152,7 +152,7 @@ fn inside(folder: &Path, file: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// SHA-256 of a regular file, in hexadecimal. A pipe in a stranger's capture would block for ever.
+/// SHA-256 of a regular file, hexadecimal. A pipe in an untrusted capture would block forever.
 pub(super) fn hash_file(path: &Path) -> std::io::Result<String> {
     check_input(path, u64::MAX)?;
     let mut file = std::fs::File::open(path)?;
@@ -166,12 +166,12 @@ pub(super) fn hash_file(path: &Path) -> std::io::Result<String> {
     }
 }
 
-/// All files below a folder by their paths in it, links left out.
+/// All files below a folder by relative path, without links.
 pub(super) fn files_below(folder: &Path) -> std::io::Result<Vec<String>> {
     below(folder, &|kind| kind.is_file())
 }
 
-/// Entries of some kind below a folder by their paths in it; links are not followed.
+/// Entries of some kind below a folder by relative path; links are not followed.
 fn below(folder: &Path, wanted: &dyn Fn(FileType) -> bool) -> std::io::Result<Vec<String>> {
     let mut list = Vec::new();
     let mut open = vec![String::new()];

@@ -1,4 +1,4 @@
-//! Captures: a picture with everything that is needed to make it again, in one folder that is whole or absent.
+//! Captures: a picture with everything needed to reproduce it, written atomically to one folder.
 
 mod list;
 mod manifest;
@@ -25,18 +25,18 @@ use crate::scene::Scene;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Where a capture keeps its graph and shaders.
+/// Folder of the graph and shaders in a capture.
 const SOURCES: &str = "graph";
-/// The experiment with nothing left to defaults.
+/// The fully resolved experiment.
 const EXPERIMENT: &str = "experiment.ron";
-/// What a capture says about itself.
+/// The description of a capture.
 const MANIFEST: &str = "capture.json";
 
 fn failed(path: &Path, error: impl std::fmt::Display) -> LabError {
     FileError::content(path, error).into()
 }
 
-/// A capture's experiment, which runs from the capture's own sources.
+/// A capture's experiment, which uses the capture's own sources.
 fn experiment_of(folder: &Path, manifest_name: &str) -> Result<Experiment, LabError> {
     let mut experiment = Experiment::read(&folder.join(EXPERIMENT)).map_err(LabError::Input)?;
     if Path::new(&experiment.graph).file_name() != Some(experiment.graph.as_ref()) {
@@ -50,14 +50,14 @@ fn experiment_of(folder: &Path, manifest_name: &str) -> Result<Experiment, LabEr
     Ok(experiment)
 }
 
-/// What rendering a capture gives.
+/// Result of rendering a capture.
 struct Rendered {
     images: Vec<(Image, Texels)>,
     frames: usize,
     stats: Stats,
 }
 
-/// Renders a capture's experiment from the capture's sources; both taking and replaying one do this.
+/// Renders a capture's experiment from its own sources; used to take and to replay captures.
 fn render(
     lab: &Lab,
     folder: &Path,

@@ -1,4 +1,4 @@
-//! The parts of the light that a capture holds.
+//! The light components stored in a capture.
 
 use super::{Manifest, SOURCES, failed};
 use crate::graph::LightPart;
@@ -9,10 +9,11 @@ use crate::results::picture;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The pictures of a capture that are parts of its light, by part: the linear picture, and what was kept beside it.
+/// The pictures of a capture that are light components, by name: the linear picture, and additional
+/// textures.
 ///
 /// # Errors
-/// Its graph or a picture cannot be read; none of its pictures is a part.
+/// The graph or a picture cannot be read; no picture is a component.
 pub fn parts(folder: &Path, manifest: &Manifest) -> Result<BTreeMap<String, Linear>, LabError> {
     if Path::new(&manifest.graph).file_name() != Some(manifest.graph.as_ref()) {
         return Err(failed(folder, "its graph must be a bare file name"));

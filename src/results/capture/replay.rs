@@ -1,4 +1,4 @@
-//! Making a capture's pictures again, and comparing.
+//! Renders a capture again and compares its pictures.
 
 use super::manifest::{files_below, hash_file};
 use super::{Image, Manifest, SOURCES, experiment_of, failed, render, scene_hash};
@@ -8,33 +8,33 @@ use crate::scene::Scene;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A picture that came out differently.
+/// A picture that differs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// Its path in the capture.
+    /// Path in the capture.
     pub file: String,
-    /// How many texels differ.
+    /// Number of differing texels.
     pub texels: usize,
-    /// Number of texels compared.
+    /// Number of compared texels.
     pub of: usize,
-    /// Largest difference of a channel: 0 to 255 in a PNG, linear in an EXR; infinite where one is no number.
+    /// Largest difference of a channel: 0 to 255 in a PNG, linear in an EXR; infinite for NaN.
     pub largest: f64,
-    /// Why it could not be compared, instead.
+    /// Reason why it could not be compared.
     pub broken: Option<String>,
 }
 
-/// Differences between a capture and the same one made again.
+/// Differences between a capture and its replay.
 #[derive(Clone, Debug, Default)]
 pub struct Replay {
     pub images: usize,
-    /// Texels compared.
+    /// Number of compared texels.
     pub texels: usize,
     pub differences: Vec<Difference>,
-    /// What else is not as it was: program, device, driver, scene.
+    /// Other changes: program, device, driver, scene.
     pub changes: Vec<String>,
 }
 
-/// Files of a capture that are not as they were when it was taken.
+/// Files of a capture that were modified after it was taken.
 pub fn changes(folder: &Path, manifest: &Manifest) -> Vec<String> {
     let mut list = Vec::new();
     for (file, hash) in &manifest.files {

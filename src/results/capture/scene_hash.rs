@@ -1,12 +1,12 @@
-//! A scene's content as one number.
+//! A hash of a scene's content.
 
 use crate::files::hex;
 use crate::scene::{LightKind, Lookups, Material, Scene, Vertex};
 use sha2::{Digest, Sha256};
 use std::mem::offset_of;
 
-/// SHA-256 over everything of a scene that can be seen: geometry, materials, textures, placement, motion, lights, sky.
-/// Names, cameras and warnings are left out.
+/// SHA-256 over the visible content of a scene: geometry, materials, textures, placement, motion,
+/// lights, sky. Names, cameras and warnings are ignored.
 pub fn scene_hash(scene: &Scene) -> String {
     let mut hash = Hash(Sha256::new());
     hash.count(scene.meshes.len());
@@ -49,7 +49,7 @@ pub fn scene_hash(scene: &Scene) -> String {
     for instance in &scene.instances {
         hash.words(&[instance.mesh]);
         hash.floats(&instance.transform.to_cols_array());
-        // The place of what motion was, so that scenes without any keep the number that they had.
+        // Keeps the hash of static scenes stable: an older format had motion here.
         hash.words(&[0]);
         hash.count(0);
     }
@@ -66,7 +66,7 @@ pub fn scene_hash(scene: &Scene) -> String {
             .iter()
             .for_each(|v| hash.floats(&v.to_array()));
     }
-    // Those that differ from nearly all alone: of other scenes the hash is what it was before there were any.
+    // Only values that differ from the default, so that hashes of older scenes stay valid.
     let plain = Material::default().dielectric();
     for (i, m) in (0u32..)
         .zip(&scene.materials)
@@ -75,7 +75,7 @@ pub fn scene_hash(scene: &Scene) -> String {
         hash.words(&[i]);
         hash.floats(&m.dielectric().to_array());
     }
-    // Likewise.
+    // Only values that differ from the default, as above.
     for (i, mesh) in (0u32..).zip(&scene.meshes) {
         if mesh
             .vertices
@@ -95,7 +95,7 @@ pub fn scene_hash(scene: &Scene) -> String {
     }
     hash_motion(scene, &mut hash);
     hash.floats(&scene.sky.to_array());
-    // Scenes without a picture keep the number that they had before there were any.
+    // Scenes without an environment map keep their older hash.
     if let Some(environment) = &scene.environment {
         let (width, height) = environment.picture.size();
         hash.words(&[width, height]);
@@ -105,7 +105,7 @@ pub fn scene_hash(scene: &Scene) -> String {
     hex(&hash.0.finalize())
 }
 
-/// Nothing of scenes that stand still.
+/// Hashes nothing for static scenes.
 fn hash_motion(scene: &Scene, hash: &mut Hash) {
     for (i, instance) in (0u32..).zip(&scene.instances) {
         if let Some(mover) = instance.mover {
@@ -145,10 +145,11 @@ fn hash_motion(scene: &Scene, hash: &mut Hash) {
     }
 }
 
-/// Bytes of a vertex before the second set and the colour, which most scenes do not have.
+/// Size of a vertex up to the second coordinate set and colour, which most scenes do not have
+/// [bytes].
 const PLAIN: usize = offset_of!(Vertex, uv_second);
 
-/// Every list goes in with its length, so that no two scenes are the same bytes.
+/// Every list is preceded by its length, so that different scenes cannot give the same bytes.
 struct Hash(Sha256);
 
 impl Hash {

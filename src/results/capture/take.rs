@@ -1,4 +1,4 @@
-//! Taking a capture.
+//! Takes a capture.
 
 use super::manifest::{check_frames, files_below, hash_file};
 use super::{
@@ -23,30 +23,31 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 /// A texture of the graph.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Resource {
-    /// Its name.
+    /// Name of the texture.
     pub name: String,
-    /// Mip.
+    /// Mip level.
     pub mip: u32,
-    /// Layer.
+    /// Array layer.
     pub layer: u32,
 }
 
-/// What a capture holds beside the picture.
+/// Content of a capture in addition to the picture.
 #[derive(Clone, Debug, Default)]
 pub struct What {
-    /// Further textures.
+    /// Additional textures.
     pub resources: Vec<Resource>,
-    /// Frames to run, at least 1. When `None` as many as the graph takes to settle, or one where time goes on.
+    /// Frames to render, at least 1. `None`: as many as the graph needs to converge, or one if time
+    /// advances.
     pub frames: Option<usize>,
-    /// Time from frame to frame, s.
+    /// Time step between frames [s].
     pub step: f64,
-    /// The GPU's times to keep on a second picture, timers.png.
+    /// GPU times drawn on a second picture, timers.png.
     pub timers: Rows,
-    /// Append a number to the name if another capture has it, as [`free_name`] does.
+    /// Appends a number to the name if it is taken, as [`free_name`] does.
     pub numbered: bool,
 }
 
-/// The first of `name`, `name-2`, `name-3` and so on that no capture in `folder` has.
+/// The first of `name`, `name-2`, `name-3` and so on that no capture in `folder` uses.
 pub fn free_name(folder: &Path, name: &str) -> String {
     let free = |n: &String| !folder.join(n).exists();
     let numbered = (2u32..).map(|i| format!("{name}-{i}"));
@@ -77,7 +78,7 @@ pub fn take(
     }
     let Loaded { graph, linked, .. } = lab.home.load_of(experiment).map_err(LabError::Input)?;
     std::fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
-    // The number says later whether the program that writes here still runs.
+    // The process id tells later whether the writing program still runs.
     let prefix = format!(".{name}.partial-{}-", std::process::id());
     let partial = tempfile::Builder::new()
         .prefix(&prefix)
@@ -96,7 +97,7 @@ pub fn take(
     let camera = camera_of(experiment, &scene)?;
     let mut resolved = experiment.clone();
     resolved.graph.clone_from(&graph_file);
-    // From here on only what the capture holds is used, so that what is missing in it is missed now.
+    // From here on only the capture's content is used, so that missing files are detected now.
     let text = resolved_text(
         &resolved,
         &graph.params,
@@ -185,7 +186,7 @@ pub fn take(
     write(&path.join(MANIFEST), &json(&manifest)?)?;
     make_readable(path).map_err(|e| failed(path, e))?;
     let target = publish(path, folder, &name, what.numbered)?;
-    // The folder has another name now: there is nothing left to clean up.
+    // The folder has been renamed, so there is nothing left to clean up.
     let _ = partial.keep();
     Ok(target)
 }
@@ -205,7 +206,7 @@ fn publish(
         });
         match std::fs::rename(finished, &target) {
             Ok(()) => return Ok(target),
-            // Another process took the name since it was found free.
+            // Another process took the name meanwhile.
             Err(_) if numbered && target.exists() => {}
             Err(_) if target.exists() => return Err(exists(&target)),
             Err(e) => return Err(failed(&target, e)),
@@ -213,7 +214,8 @@ fn publish(
     }
 }
 
-/// A time in UTC as RFC 3339, within the years 1970 to 9999: a board without a battery may start in 1969.
+/// A UTC time as RFC 3339, clamped to the years 1970 to 9999, because a device without a battery
+/// may start in 1969.
 fn rfc3339(time: SystemTime) -> String {
     const LAST: Duration = Duration::from_secs(253_402_300_799);
     humantime::format_rfc3339_seconds(time.clamp(UNIX_EPOCH, UNIX_EPOCH + LAST)).to_string()
@@ -233,7 +235,7 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), LabError> {
     Ok(crate::files::write_whole(path, bytes)?)
 }
 
-/// Temporary folders are private to their owner; captures are as readable as any other folder.
+/// Makes a temporary folder, which is private to its owner, as readable as other folders.
 fn make_readable(path: &Path) -> std::io::Result<()> {
     #[cfg(unix)]
     {
@@ -244,8 +246,8 @@ fn make_readable(path: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Writes the text of every file that the graph was read from and its shaders compiled from, where the program looks
-/// for them, and returns the name of the graph's file.
+/// Writes every source file of the graph and its shaders where the program looks for them. Returns
+/// the name of the graph's file.
 fn write_sources(
     graph: &Graph,
     linked: &[Linked],
@@ -283,7 +285,8 @@ fn write_sources(
             ));
         }
     }
-    // What the graph makes comes from its parameters. The files of other options go along: a capture can be varied.
+    // Generated files depend on parameters. Files of other options are included, so that a capture
+    // can be varied.
     let generated = generated(graph, &graph.params);
     let compiler = ShaderCompiler::new(&folders.shaders, None);
     let options = graph.params.list.iter().flat_map(|p| &p.files);
@@ -307,7 +310,7 @@ fn write_sources(
     Ok(main_name.to_string())
 }
 
-/// The pictures of a capture: the graph's results, then what was asked for.
+/// The pictures of a capture: the graph's results, then the requested textures.
 fn images_of(graph: &Graph, resources: &[Resource]) -> Result<Vec<Image>, LabError> {
     let result = |name: &Option<String>, file: &str| {
         name.clone().map(|texture| Image {

@@ -1,11 +1,11 @@
-//! Scenes that need no file: scene files that the program holds itself.
+//! Built-in scenes: scene files that are compiled into the program.
 
 use std::path::Path;
 
 use super::progress::Progress;
 use super::{Scene, SceneError, file};
 
-/// Name, what it is, and the scene file's text.
+/// Name, description and text of each scene file.
 const ALL: &[(&str, &str, &str)] = &[
     (
         "atrium",
@@ -156,7 +156,7 @@ pub(super) fn open(name: &str, progress: Progress) -> Result<Scene, SceneError> 
     file::read(text, Path::new(&format!("{name}.ron")), progress)
 }
 
-/// What to say about a name that is none of them.
+/// The hint for an unknown name.
 pub(super) fn hint(name: &str) -> String {
     let names: Vec<&str> = list().map(|(name, _)| name).collect();
     let nearest = names

@@ -1,4 +1,5 @@
-//! A clear sky by the CIE's standard general sky (ISO 15469:2004, CIE S 011), for scenes without a file.
+//! A clear sky after the CIE standard general sky (ISO 15469:2004, CIE S 011), for scenes without a
+//! file.
 
 use super::{Environment, Level, SkyPicture, direction};
 use glam::Vec3;
@@ -11,29 +12,29 @@ const C: f32 = 10.0;
 const D: f32 = -3.0;
 const E: f32 = 0.45;
 
-/// Half of the angle that the sun's disc has, degrees.
+/// Angular radius of the sun's disc [degrees].
 const SUN_RADIUS: f32 = 0.265;
 
-/// Samples a side of a texel that the sun's edge may cross.
+/// Samples per side of a texel that the sun's edge may cross.
 const SUN_SAMPLES: u32 = 16;
 
 /// A clear sky over ground.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct ClearSky {
-    /// Texels around.
+    /// Texels per row.
     width: u32,
-    /// Toward the sun.
+    /// Direction to the sun.
     sun: Vec3,
-    /// By the sun, of what faces it.
+    /// Irradiance from the sun on a surface that faces it.
     irradiance: Vec3,
-    /// Radiance.
+    /// Radiance at the zenith.
     zenith: Vec3,
-    /// Radiance.
+    /// Radiance of the ground.
     ground: Vec3,
 }
 
-/// The picture of a clear sky.
+/// Renders a clear sky to an environment map.
 pub(in crate::scene) fn clear_sky(sky: &ClearSky) -> Result<Environment, String> {
     let &ClearSky {
         width,
@@ -79,8 +80,8 @@ pub(in crate::scene) fn clear_sky(sky: &ClearSky) -> Result<Environment, String>
     Ok(Environment::of(SkyPicture::new(level)))
 }
 
-/// Luminance in direction `d` over that of the zenith: gradation from zenith to horizon, times the indicatrix around the
-/// sun.
+/// Luminance in direction `d` relative to the zenith: gradation from zenith to horizon times the
+/// indicatrix around the sun.
 fn relative_luminance(d: Vec3, sun: Vec3) -> f32 {
     let gradation = |cosine: f32| 1.0 + A * (B / cosine.max(0.01)).exp();
     let indicatrix = |angle: f32| {
@@ -92,7 +93,7 @@ fn relative_luminance(d: Vec3, sun: Vec3) -> f32 {
         / (indicatrix(sun.y.clamp(-1.0, 1.0).acos()) * gradation(1.0))
 }
 
-/// Adds the sun's disc: each texel by how much of it the disc covers, scaled so that the whole has this irradiance.
+/// Adds the sun's disc: texels are weighted by coverage and scaled to the given irradiance.
 fn add_sun(level: &mut Level, sun: Vec3, irradiance: Vec3) {
     let cosine = SUN_RADIUS.to_radians().cos();
     let near = (SUN_RADIUS + 360.0 / level.width as f32).to_radians().cos();

@@ -1,4 +1,5 @@
-//! Pictures of the sky from files, which are not trusted: sizes and memory are limited, what is no radiance becomes 0.
+//! Environment maps from untrusted files: sizes and memory are limited, and invalid radiance
+//! becomes 0.
 
 use super::{Environment, Level, SkyPicture};
 use crate::diagnostics::panics::caught;
@@ -8,15 +9,13 @@ use image::ImageFormat;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Larger pictures are reduced to this.
+/// Larger pictures are reduced to this size.
 const MAX_SIZE: (u32, u32) = (4096, 2048);
-/// Largest radiance: far above what any sky has, and products of it are finite.
+/// Largest radiance: far above any sky, and its products stay finite.
 const MAX_RADIANCE: f32 = 1e12;
 
-/// Reads an HDR or EXR file. What is not as its author meant it goes to the warnings, which name the file.
-///
-/// # Errors
-/// The text for the user: no such file, no such picture, too large.
+/// Reads an HDR or EXR file. Deviations from the file are added to the warnings, which name the
+/// file.
 pub(crate) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Environment, String> {
     let level = caught(|| decode(path))
         .flatten()
@@ -46,7 +45,7 @@ fn decode(path: &Path) -> Result<Level, String> {
     })
 }
 
-/// The picture without impossible numbers and not larger than is of use.
+/// Replaces invalid values and reduces the picture to [`MAX_SIZE`].
 fn checked(mut level: Level, warn: &mut dyn FnMut(String)) -> Level {
     let (width, height) = (level.width, level.height);
     if width != 2 * height {

@@ -13,20 +13,22 @@ pub(crate) struct Level {
 }
 
 impl Level {
-    /// Solid angle of a texel of a row [sr].
+    /// Solid angle of a texel in a row [sr].
     pub fn solid_angle(&self, row: u32) -> f64 {
         let edge = |row: u32| (PI * f64::from(row) / f64::from(self.height)).cos();
         TAU / f64::from(self.width) * (edge(row) - edge(row + 1))
     }
 
-    /// The same picture with as many or fewer texels: each is the mean over the directions that it covers.
+    /// The same picture with at most as many texels, each the mean over the directions that it
+    /// covers.
     pub fn reduced(&self, width: u32, height: u32) -> Level {
         let (columns, rows) = (covered(self.width, width), covered(self.height, height));
         let row = |covers: &Vec<(u32, f64, f64)>| {
             let mean = |columns: &Vec<(u32, f64, f64)>| {
                 let (mut sum, mut weights) = ([0.0f64; 3], 0.0);
                 for &(y, top, bottom) in covers {
-                    // A part of a row has the solid angle between its edges.
+                    // Solid angle is proportional to the cosine of the polar angle, so a part of a
+                    // row is the difference at its edges.
                     let edge = |y: f64| (PI * y / f64::from(self.height)).cos();
                     let tall = edge(top) - edge(bottom);
                     for &(x, left, right) in columns {
@@ -47,7 +49,7 @@ impl Level {
         }
     }
 
-    /// This and all coarser levels, the last of one texel.
+    /// This level and all coarser ones, down to one texel.
     pub fn chain(self) -> Vec<Level> {
         let mut levels = vec![self];
         while let Some(last) = levels.last().filter(|l| l.width > 1 || l.height > 1) {
@@ -58,7 +60,8 @@ impl Level {
     }
 }
 
-/// For each of `to` equal parts of a line of `from` texels: the texels in it, and from where to where.
+/// For each of `to` equal intervals over `from` texels: the overlapped texels with the start and
+/// end of the overlap.
 fn covered(from: u32, to: u32) -> Vec<Vec<(u32, f64, f64)>> {
     let size = f64::from(from) / f64::from(to);
     let part = |i: u32| {

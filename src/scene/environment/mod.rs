@@ -1,4 +1,4 @@
-//! The sky as a picture of all directions.
+//! The sky as an environment map.
 
 mod clear_sky;
 mod file;
@@ -16,21 +16,21 @@ pub(crate) use file::read;
 pub(crate) use level::Level;
 use sun::Sun;
 
-/// Name of the light that stands for the sun of a sky's picture.
+/// Name of the light extracted from the sun of an environment map.
 pub const SUN: &str = "sun of the sky";
 
-/// A picture of the sky, and how it is turned.
+/// An environment map with its rotation.
 #[derive(Clone, Debug)]
 pub struct Environment {
-    /// The file, if it is of one.
+    /// The source file, if any.
     pub file: Option<PathBuf>,
     pub picture: Arc<SkyPicture>,
-    /// Degrees about y: at 90 what the picture has in its middle lies towards -x.
+    /// Rotation about y [degrees]; at 90 the middle of the picture points towards -x.
     pub rotation: f32,
 }
 
-/// Radiance of all directions, equirectangular, y up: its middle looks to -z, +x is to the right of it, the first row is
-/// around +y.
+/// Equirectangular radiance with y up: the middle points to -z, +x is to its right, and the first
+/// row is around +y.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SkyPicture {
     pub(crate) level: Level,
@@ -66,7 +66,7 @@ impl SkyPicture {
 }
 
 impl Environment {
-    /// A picture that is of no file.
+    /// An environment without a source file.
     pub(crate) fn of(picture: SkyPicture) -> Environment {
         Environment {
             file: None,
@@ -75,14 +75,14 @@ impl Environment {
         }
     }
 
-    /// The file's name, for people.
+    /// The file's name for display.
     pub fn name(&self) -> String {
         self.file
             .as_ref()
             .map_or("the scene's own".into(), |path| path.display().to_string())
     }
 
-    /// The picture's sun as a light, where radiance is the picture's times `factor`.
+    /// The sun of the map as a light, with radiance scaled by `factor`.
     pub fn sun(&self, factor: Vec3, rotation: f32) -> Option<Light> {
         let sun = self.picture.sun.as_ref()?;
         Some(Light {
@@ -97,7 +97,7 @@ impl Environment {
 }
 
 impl Scene {
-    /// The scene under another picture of the sky; an empty path leaves it as it is.
+    /// The scene with another environment map; an empty path keeps the current one.
     pub fn under(mut self, file: &Path) -> Result<Scene, SceneError> {
         if !file.as_os_str().is_empty() {
             let read = file::read(file, &mut self.warnings)
@@ -107,7 +107,7 @@ impl Scene {
         Ok(self)
     }
 
-    /// All that methods with lights are lit by: the scene's lights, then the sun of its sky.
+    /// The scene's lights, then the sun of its environment map.
     pub fn all_lights(&self) -> Vec<Light> {
         let sun = self
             .environment
@@ -117,7 +117,7 @@ impl Scene {
     }
 }
 
-/// The direction of a place in the picture, both 0 to 1.
+/// The direction at picture coordinates in 0..1.
 fn direction(u: f32, v: f32) -> Vec3 {
     let (azimuth, polar) = ((u - 0.5) * TAU, v * PI);
     Vec3::new(
@@ -127,7 +127,7 @@ fn direction(u: f32, v: f32) -> Vec3 {
     )
 }
 
-/// What is wrong with the numbers of an environment.
+/// Checks the numbers of an environment.
 pub(crate) fn check(rotation: f32, intensity: f32) -> Result<(), String> {
     if !rotation.is_finite() || rotation.abs() > 36_000.0 {
         return Err("the environment's rotation must be a number of degrees, at most 36000".into());

@@ -1,33 +1,34 @@
-//! The sun in a picture of the sky. Rays would meet its disc by chance, and what it lights would have no sharp shadows;
-//! so methods get it as a directional light, and a picture without it.
+//! Extraction of the sun from an environment map. Sampled rays would hit its small disc only by
+//! chance, which gives noise and no sharp shadows. Methods therefore get the sun as a directional
+//! light and the map without it.
 
 use super::{Level, direction, luminance};
 use glam::{DVec3, Vec3};
 
-/// A peak is of texels brighter than this times the mean over all directions,
+/// Texels of a sun are brighter than this multiple of the mean over all directions,
 const TIMES_MEAN: f64 = 50.0;
-/// that lie within so many degrees of the brightest,
+/// within this angle of the brightest texel [degrees],
 const WITHIN: f64 = 5.0;
-/// and together bring at least this share of all light.
+/// and together at least this share of all light.
 const SHARE: f64 = 0.02;
-/// What is around it is the mean of what lies outside, to so many degrees.
+/// The surroundings are averaged out to this angle [degrees].
 const AROUND: f64 = 7.5;
 
-/// A compact peak of a picture.
+/// A compact peak of an environment map.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Sun {
-    /// To its middle, unit length, in the picture's own frame.
+    /// Unit vector to its centre, in the frame of the map.
     pub direction: Vec3,
-    /// Of a surface that faces it, by what it is brighter than its surroundings.
+    /// Irradiance on a surface that faces it, above the surroundings.
     pub irradiance: Vec3,
-    /// Radiance around it.
+    /// Mean radiance around it.
     pub surroundings: Vec3,
-    /// Which texels are its own, in order.
+    /// Its texels, in ascending order.
     pub texels: Vec<u32>,
 }
 
 impl Sun {
-    /// The picture without it.
+    /// The map without the sun.
     pub fn removed(&self, level: &Level) -> Level {
         let mut without = level.clone();
         for texel in &self.texels {
@@ -37,7 +38,7 @@ impl Sun {
     }
 }
 
-/// The sun of a picture, if it has one.
+/// The sun of a map, if it has one.
 pub(super) fn find(level: &Level) -> Option<Sun> {
     let width = level.width as usize;
     let sizes: Vec<f64> = (0..level.height)
@@ -93,7 +94,7 @@ pub(super) fn find(level: &Level) -> Option<Sun> {
         middle += luminance(above.as_vec3().to_array()) * to(i);
     }
     let own = luminance(irradiance.as_vec3().to_array());
-    // What is as bright all around is no disc but a part of something large.
+    // A peak with equally bright surroundings is a part of something large, not a disc.
     let compact = luminance(surroundings.as_vec3().to_array()) < limit;
     let sun = Sun {
         direction: middle.try_normalize()?.as_vec3(),
@@ -158,7 +159,7 @@ mod tests {
                 .iter()
                 .all(|t| (t[0] - 1.0).abs() < 1e-4)
         );
-        // Too weak, too little light, and too large.
+        // Too weak, too small a share, and too large.
         for level in [
             picture(disc(to, 1.0, 30.0)),
             picture(disc(to, 0.5, 100.0)),

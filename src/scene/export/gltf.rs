@@ -24,7 +24,7 @@ pub(super) struct Writer {
     pub(super) clips: Vec<Clip>,
 }
 
-/// Writes a .glb, or a .gltf and a .bin beside it.
+/// Writes a .glb, or a .gltf with a .bin.
 pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), SceneError> {
     let mut writer = Writer::default();
     let images = scene.textures.iter().map(|texture| {
@@ -32,7 +32,7 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
         Ok(json!({ "bufferView": view, "mimeType": "image/png", "name": texture.name }))
     });
     let images = images.collect::<Result<Vec<Value>, SceneError>>()?;
-    // A mesh without triangles has no legal form and nothing to show.
+    // glTF forbids meshes without triangles.
     let mut written = vec![None; scene.meshes.len()];
     let mut meshes = Vec::new();
     for (i, mesh) in scene
@@ -91,7 +91,7 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
         "extensions": { "KHR_lights_punctual": { "lights": scene.lights.iter().map(light).collect::<Vec<_>>() } },
     });
     root["animations"] = json!(writer.clips.iter().map(Clip::json).collect::<Vec<_>>());
-    // Arrays may be absent but not empty.
+    // glTF forbids empty arrays.
     if let Some(root) = root.as_object_mut() {
         root.retain(|_, value| value.as_array().is_none_or(|array| !array.is_empty()));
     }
@@ -144,7 +144,7 @@ fn save(mut root: Value, bytes: Vec<u8>, path: &Path, binary: bool) -> Result<()
 }
 
 impl Writer {
-    /// Adds bytes on a boundary of 4 and returns the index of their view.
+    /// Appends bytes with 4-byte alignment and returns the index of their view.
     fn view(&mut self, bytes: &[u8], more: Value) -> usize {
         let mut view =
             json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
@@ -163,7 +163,7 @@ impl Writer {
     }
 
     fn mesh(&mut self, mesh: &Mesh) -> Value {
-        // The second set and colours are last in a vertex, and few meshes have them.
+        // Few meshes use the second set and the colours, which are last in a vertex.
         let more = mesh.vertices.iter().any(|v| v.uv_second != [0.0; 2]) || mesh.has_colors();
         let stride = if more {
             size_of::<Vertex>()
@@ -216,7 +216,7 @@ impl Writer {
         json!({ "name": mesh.name, "primitives": primitives })
     }
 
-    /// Adds a node below another one, or to the scene.
+    /// Adds a node below `parent`, or to the scene.
     pub(super) fn below(&mut self, parent: Option<usize>, node: Value) -> usize {
         let number = self.nodes.len();
         self.nodes.push(node);
@@ -230,7 +230,7 @@ impl Writer {
         number
     }
 
-    /// Writes the smallest and the largest number of an accessor.
+    /// Writes `min` and `max` of an accessor.
     pub(super) fn limits(&mut self, accessor: usize, low: f32, high: f32) {
         self.accessors[accessor]["min"] = json!([low]);
         self.accessors[accessor]["max"] = json!([high]);
@@ -324,7 +324,7 @@ fn unlit(material: &Material, mut value: Value) -> Value {
 }
 
 fn light(light: &Light) -> Value {
-    // The colour must not exceed 1; the rest is intensity.
+    // glTF colours must not exceed 1; the rest becomes the intensity.
     let intensity = light.color.max_element().max(f32::MIN_POSITIVE);
     let mut value = json!({
         "name": light.name, "color": (light.color / intensity).to_array(), "intensity": intensity,

@@ -1,4 +1,4 @@
-//! Textures as PNG, pictures of the sky as EXR.
+//! Textures as PNG, environment maps as EXR.
 
 use crate::files::FileError;
 use std::io::Cursor;
@@ -38,7 +38,7 @@ pub(super) fn grey_png(
     encode(&grey, texture, ExtendedColorType::L8, target)
 }
 
-/// Radiance of all directions where it is the picture's times `factor`.
+/// The environment map times `factor` as an EXR.
 pub(super) fn sky_exr(
     sky: &Environment,
     factor: Vec3,
@@ -68,7 +68,7 @@ fn texels(texture: &Texture, target: &Path) -> Result<Vec<u8>, SceneError> {
     };
     let mut rgba = first_level_rgba(texture).map_err(fail)?.into_owned();
     if texture.format == TextureFormat::Bc5Unorm {
-        // BC5 stores the x and y of normals; z follows from their unit length.
+        // BC5 stores x and y of a unit normal; z follows.
         for texel in rgba.as_chunks_mut::<4>().0 {
             let [x, y] = [texel[0], texel[1]].map(|c| f32::from(c) / 127.5 - 1.0);
             let z = (1.0 - x * x - y * y).max(0.0).sqrt();

@@ -1,4 +1,4 @@
-//! Writing scenes for other programs. Opening an exported file gives the same triangles and materials.
+//! Export to other programs. Re-opening an exported file gives the same triangles and materials.
 
 mod gltf;
 mod images;
@@ -85,7 +85,7 @@ fn write_file(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
     Ok(files::write_whole(path, bytes)?)
 }
 
-/// Names made unique by numbering the later ones.
+/// Makes names unique by numbering repetitions.
 fn unique_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken = std::collections::HashSet::new();
     let mut unique = Vec::new();

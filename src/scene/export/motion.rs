@@ -1,4 +1,5 @@
-//! Moving nodes of a glTF file: each has a node that places it, where it is placed, and one that moves below.
+//! Moving nodes of a glTF file. Each mover becomes two nodes: the static placement and, below it,
+//! the animated node.
 
 use glam::Mat4;
 use serde_json::{Value, json};
@@ -6,7 +7,7 @@ use serde_json::{Value, json};
 use super::gltf::Writer;
 use crate::scene::{Curve, Interpolation, Mover, Scene, Track};
 
-/// Channels that repeat together: animations of glTF last as long as their longest channel.
+/// Channels with one period: a glTF animation lasts as long as its longest channel.
 #[derive(Default)]
 pub(super) struct Clip {
     period: Option<f32>,
@@ -20,7 +21,7 @@ impl Clip {
     }
 }
 
-/// The node of each mover that instances have, for what it moves.
+/// The animated node of each mover that an instance uses.
 pub(super) fn movers(writer: &mut Writer, scene: &Scene) -> Vec<Option<usize>> {
     let mut names: Vec<Option<&str>> = vec![None; scene.movers.len()];
     for instance in &scene.instances {

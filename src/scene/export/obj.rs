@@ -8,7 +8,7 @@ use glam::{Mat3, Mat4, Vec3};
 use super::{images, unique_names, write_file};
 use crate::scene::{Material, Mesh, Scene, SceneError};
 
-/// Writes `path`, the .mtl beside it and PNG files into a folder `<stem>_textures`.
+/// Writes `path`, the .mtl with the same stem, and PNG files in a folder `<stem>_textures`.
 pub(super) fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
     let materials = unique_names(
         scene
@@ -73,7 +73,8 @@ fn write_instance(
         let n = (normals * Vec3::from_array(vertex.normal)).normalize_or(Vec3::Y);
         writeln!(out, "vn {} {} {}", n.x, n.y, n.z)?;
     }
-    // A mirroring transform turns faces inside out; the file has no transform, so its corners turn instead.
+    // A mirroring transform flips the winding. The file has no transforms, so the corners are
+    // reversed instead.
     let order = if axes.determinant() < 0.0 {
         [0, 2, 1]
     } else {
@@ -120,7 +121,7 @@ fn write_material(
         if material.alpha_cutoff > 0.0 {
             maps.push(format!("map_d {entry}"));
         }
-        // Readers take a map next to a colour of 0 as it is.
+        // Readers use a map as it is if its colour is 0.
         if material.base_color.truncate() != Vec3::ZERO {
             maps.push(format!("map_Kd {entry}"));
         }
@@ -150,7 +151,8 @@ fn write_material(
         maps.push(format!("map_Ke {entry}"));
     }
     let ([r, g, b, a], e) = (material.base_color.to_array(), material.emission);
-    // `two_sided`, `alpha_cutoff`, `ior` and `specular` are ours; other programs skip keys that they do not know.
+    // `two_sided`, `alpha_cutoff`, `ior` and `specular` are extensions of conelab; other programs
+    // skip unknown keys.
     let text = format!(
         "newmtl {name}\nKd {r} {g} {b}\nd {a}\nKs 0 0 0\nPr {}\nPm {}\nKe {} {} {}\ntwo_sided {}\nalpha_cutoff {}\n{}\n\n",
         material.roughness,

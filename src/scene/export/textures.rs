@@ -1,11 +1,11 @@
-//! Textures of a glTF file: an image and how it is looked up.
+//! Textures of a glTF file: pairs of an image and a sampler.
 
 use indexmap::IndexSet;
 use serde_json::{Value, json};
 
 use crate::scene::{Lookup, Wrap};
 
-/// The textures that materials refer to: each pair of an image and a sampler once.
+/// The textures used by materials, each pair of image and sampler once.
 #[derive(Default)]
 pub(super) struct Textures {
     pairs: IndexSet<(u32, Lookup)>,
@@ -14,7 +14,7 @@ pub(super) struct Textures {
 impl Textures {
     /// A material's reference to an image.
     pub fn reference(&mut self, image: u32, lookup: Lookup) -> Value {
-        // The reference names the set of coordinates, not the texture.
+        // The set of coordinates belongs to the reference, not to the texture.
         let (index, _) = self.pairs.insert_full((
             image,
             Lookup {
@@ -29,7 +29,7 @@ impl Textures {
         }
     }
 
-    /// The file's `textures`; each has the sampler of its own number.
+    /// The file's `textures`; each has its own sampler.
     pub fn list(&self) -> Vec<Value> {
         (0..)
             .zip(&self.pairs)

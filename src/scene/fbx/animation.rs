@@ -1,4 +1,4 @@
-//! Motion of nodes by the first animation, baked by ufbx to keys with straight lines between them.
+//! Node motion from the first animation, baked by ufbx to linearly interpolated keys.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -13,19 +13,20 @@ use crate::scene::obj::shown;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Curve, Interpolation, Rest, Track};
 
-/// Tracks of nodes and weights of shapes.
+/// Tracks of nodes and weights of blend shapes.
 #[derive(Default)]
 pub(super) struct Motion {
-    /// The key is the number of the node.
+    /// Keyed by the number of the node.
     tracks: HashMap<u32, Arc<Track>>,
-    /// The key is the element of the channel.
+    /// Keyed by the element of the channel.
     weights: HashMap<u32, Curve<f32>>,
-    /// Seconds after which all start over.
+    /// Period of all tracks [s].
     pub period: Option<f32>,
 }
 
 impl Motion {
-    /// Bakes the first animation, or the one with the name of `clip`. The file's length in bytes limits the memory.
+    /// Bakes the first animation, or the one named `clip`. The length of the file in bytes limits
+    /// the memory.
     pub fn read(
         file: &ufbx::Scene,
         bytes: usize,
@@ -68,7 +69,7 @@ impl Motion {
             .filter(|n| !(n.constant_translation && n.constant_rotation && n.constant_scale));
         let moving: Vec<&BakedNode> = moving.collect();
         let weights = weights(&baked)?;
-        // All start over together.
+        // All tracks share the longest period.
         let last = moving.iter().map(|n| last_key(n)).fold(0.0, f64::max) as f32;
         let last = weights
             .values()
@@ -96,18 +97,18 @@ impl Motion {
         })
     }
 
-    /// How much of a channel's shapes there is, if it changes.
+    /// The weight of a channel over time, if it changes.
     pub fn weights(&self, channel: &ufbx::BlendChannel) -> Option<&Curve<f32>> {
         self.weights.get(&channel.element.element_id)
     }
 
-    /// How a node moves in its parent, if it does.
+    /// The track of a node in its parent's frame, if it moves.
     pub fn of(&self, node: &Node) -> Option<Arc<Track>> {
         self.tracks.get(&node.element.typed_id).cloned()
     }
 }
 
-/// The weights of blend channels that change, 1 for all of a shape.
+/// Weights of animated blend channels, scaled to 0..1.
 fn weights(baked: &ufbx::BakedAnim) -> Result<HashMap<u32, Curve<f32>>, String> {
     let mut found = HashMap::new();
     for element in &baked.elements {
@@ -142,7 +143,7 @@ fn last_key(node: &BakedNode) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// None where a number is not finite.
+/// `None` if a number is not finite.
 fn track(node: &Node, baked: &BakedNode, period: Option<f32>) -> Option<Track> {
     let rest = &node.local_transform;
     let rest = Rest {
@@ -181,7 +182,7 @@ fn track(node: &Node, baked: &BakedNode, period: Option<f32>) -> Option<Track> {
     })
 }
 
-/// Without a length it turns nothing.
+/// A quaternion of zero length becomes the identity.
 fn rotation(q: ufbx::Quat) -> Quat {
     let q = DQuat::from_xyzw(q.x, q.y, q.z, q.w);
     let sound = q.is_finite() && q.length_squared() > 0.0;

@@ -1,4 +1,4 @@
-//! Blend shapes: offsets of vertices and weights over time.
+//! Blend shapes: vertex offsets and weights over time.
 
 use glam::Vec3;
 use ufbx::{BlendKeyframe, BlendShape, Mesh};
@@ -7,7 +7,7 @@ use super::animation::Motion;
 use super::numbers::vector;
 use crate::scene::{Curve, Interpolation, Morph};
 
-/// A shape of each keyframe of each channel, in the order of the file.
+/// A shape for each keyframe of each channel, in file order.
 fn keyframes(mesh: &Mesh) -> impl Iterator<Item = (&ufbx::BlendChannel, &BlendKeyframe)> {
     let channels = mesh
         .blend_deformers
@@ -21,7 +21,7 @@ pub(super) fn any(mesh: &Mesh) -> bool {
     keyframes(mesh).next().is_some()
 }
 
-/// Offsets for each vertex of the file. Their number is taken off `room`.
+/// Offsets for each vertex of the file. Their number is subtracted from `room`.
 pub(super) fn morphs(mesh: &Mesh, room: &mut usize) -> Result<Vec<Morph>, String> {
     let rest = Smooth::of(mesh, None);
     let morph = |(_, key): (_, &BlendKeyframe)| {
@@ -57,7 +57,7 @@ pub(super) fn morphs(mesh: &Mesh, room: &mut usize) -> Result<Vec<Morph>, String
     keyframes(mesh).map(morph).collect()
 }
 
-/// The weight of each shape over time. In a channel of several shapes weights stay as they are in the file.
+/// The weight of each shape over time. Channels with several shapes keep their static weights.
 pub(super) fn weights(mesh: &Mesh, motion: &Motion) -> Option<Vec<Curve<f32>>> {
     let weight = |(channel, key): (&ufbx::BlendChannel, &BlendKeyframe)| {
         let alone = channel.keyframes.len() == 1 && key.target_weight != 0.0;
@@ -77,8 +77,8 @@ pub(super) fn weights(mesh: &Mesh, motion: &Motion) -> Option<Vec<Curve<f32>>> {
     keyframes(mesh).map(weight).collect()
 }
 
-/// For each vertex the sum of the normals of its faces, by area. A shape changes this sum, and the same change is applied to the
-/// normals of the file; few files have normals of shapes.
+/// Sum of the area-weighted face normals at each vertex. The change of this sum under a shape is
+/// applied to the normals of the file, because few files have normals for shapes.
 struct Smooth(Vec<Vec3>);
 
 impl Smooth {

@@ -1,4 +1,4 @@
-//! From a file's bytes to a document of ufbx, with bounds on memory and depth.
+//! From a file's bytes to a ufbx document, with bounds on memory and depth.
 
 use ufbx::{
     AllocatorOpts, CoordinateAxes, ErrorType, FileFormat, InheritModeHandling, LoadOpts,
@@ -7,16 +7,16 @@ use ufbx::{
 
 use crate::scene::progress::Progress;
 
-/// Memory that any file may take.
+/// Memory that any file may use.
 const MEMORY: usize = 256 << 20;
-/// Memory that a file may take for each of its bytes: arrays are compressed, and numbers become 64 bits.
+/// Additional memory per byte of the file: arrays are compressed, and numbers become 64 bits.
 const PER_BYTE: usize = 64;
-/// Begins a binary file, which may be too short to be known otherwise.
+/// Header of a binary file; ufbx does not recognise very short ones.
 const MAGIC: &[u8] = b"Kaydara FBX Binary";
-/// Nodes above a node.
+/// Maximum depth of the node hierarchy.
 const MAX_DEPTH: u32 = 512;
 
-/// Limits memory by the length of a file in bytes.
+/// Limits memory by the file's length in bytes.
 pub(super) fn memory(bytes: usize) -> AllocatorOpts {
     AllocatorOpts {
         memory_limit: MEMORY.saturating_add(bytes.saturating_mul(PER_BYTE)),
@@ -24,7 +24,7 @@ pub(super) fn memory(bytes: usize) -> AllocatorOpts {
     }
 }
 
-/// Reads a document. Lengths are in metres, y is up; the frame of the root node has the conversion.
+/// Reads a document in metres with y up; the transform of the root node holds the conversion.
 pub(super) fn read(bytes: &[u8], progress: Progress) -> Result<SceneRoot, String> {
     let ask = |_: &ufbx::Progress| match progress.stopped() {
         true => ProgressResult::Cancel,

@@ -1,4 +1,4 @@
-//! Lights without extent.
+//! Punctual lights.
 
 use glam::{DAffine3, DVec3};
 use ufbx::{Exporter, Light as From, LightAreaShape, LightDecay, LightType};
@@ -8,7 +8,7 @@ use crate::scene::gltf::SCALE;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Light, LightKind};
 
-/// A light as its node places it, or why there is none.
+/// A light placed by its node, or the reason why it is dropped.
 pub(super) fn read(
     from: &From,
     exporter: Exporter,
@@ -17,8 +17,8 @@ pub(super) fn read(
     warnings: &mut Warnings,
 ) -> Result<Light, &'static str> {
     let is_blender = matches!(exporter, Exporter::BlenderBinary | Exporter::BlenderAscii);
-    // Blender omits numbers that are equal to its own template and may not write that template. Then ufbx takes numbers of
-    // another template.
+    // Blender omits values equal to its own template and may omit the template too. ufbx then
+    // substitutes values of another template.
     let is_own = |name: &str| {
         !is_blender
             || from
@@ -39,7 +39,7 @@ pub(super) fn read(
         1.0
     };
     let is_quadratic = is_blender || from.decay == LightDecay::Quadratic;
-    // Watts of a lamp in all directions; suns have W/m^2.
+    // Blender writes the total power of a lamp in W, and W/m^2 for a sun.
     let whole = if is_blender && from.type_ != LightType::Directional {
         4.0 * std::f64::consts::PI
     } else {
@@ -98,7 +98,7 @@ pub(super) fn read(
     })
 }
 
-/// Whole angles in degrees.
+/// Full cone angles in degrees.
 fn spot(from: &From) -> Result<LightKind, &'static str> {
     let half = |degrees: f64| (0.5 * degrees).to_radians() as f32;
     let (inner, outer) = (half(from.inner_angle), half(from.outer_angle));

@@ -1,4 +1,4 @@
-//! Materials of physical kinds, and Phong and Lambert, which are read as MTL files are.
+//! Materials: physical models, and Phong and Lambert, which are converted as in MTL files.
 
 use glam::{DAffine2, DVec3, Vec3};
 use ufbx::{Material as From, MaterialMap, ShaderType};
@@ -18,21 +18,21 @@ pub(super) const WORDS: Words = Words {
     heights: "bump maps that hold heights are left out. Convert them to normal maps",
 };
 
-/// A set of the file by name (empty: the first), and a transform.
+/// A named coordinate set (empty: the first one) and a transform.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct UvSource {
     pub set: String,
     pub transform: DAffine2,
 }
 
-/// A material, and the coordinates that it reads.
+/// A material and its texture coordinates.
 #[derive(Clone, Debug)]
 pub(super) struct Read {
     pub asked: Asked,
     pub uv: UvSources<UvSource>,
 }
 
-/// All materials in the order of the file.
+/// All materials in file order.
 pub(super) fn read(
     file: &ufbx::Scene,
     pictures: &mut Pictures,
@@ -66,7 +66,7 @@ fn convert(from: &From, pictures: &mut Pictures, warnings: &mut Warnings) -> Rea
         &pbr.opacity
     };
     let [color_map, alpha] = [&pbr.base_color, alpha_map].map(|map| laid(map, warnings));
-    // A Phong exponent is no roughness.
+    // A Phong exponent is not a roughness.
     let roughness = if is_phong {
         None
     } else {
@@ -80,7 +80,7 @@ fn convert(from: &From, pictures: &mut Pictures, warnings: &mut Warnings) -> Rea
             .map(|f| (f, true))
     });
     let normal = normal.filter(|((_, image, is_missing), is_bump)| {
-        // Most bump maps hold heights: a checkerboard of normals would be wrong.
+        // Most bump maps hold heights, so a placeholder with normals would be wrong.
         if *is_missing && *is_bump {
             warnings.add(
                 "bump maps that are not there are left out",
@@ -130,7 +130,7 @@ fn convert(from: &From, pictures: &mut Pictures, warnings: &mut Warnings) -> Rea
     }
 }
 
-/// The numbers. A texture replaces the value, and the factor multiplies it.
+/// The factors. A texture replaces the value and is multiplied by the factor.
 fn parts(from: &From, is_phong: bool, maps: Maps, name: String) -> Parts {
     let (pbr, fbx) = (&from.pbr, &from.fbx);
     let tinted = |map: &MaterialMap, factor: &MaterialMap, has_map: bool, default: Vec3| {
@@ -199,7 +199,7 @@ fn parts(from: &From, is_phong: bool, maps: Maps, name: String) -> Parts {
     }
 }
 
-/// The part of light that comes through is the mean of a colour times a factor. Some programs write the opacity instead.
+/// Transparency is the mean of a colour times a factor. Some programs write the opacity instead.
 fn opacity_of_phong(from: &From) -> Option<f32> {
     if let Some(opacity) = from.element.props.find_prop("Opacity") {
         return Some(opacity.value_vec4.x as f32).filter(|v| v.is_finite());
@@ -214,7 +214,7 @@ fn opacity_of_phong(from: &From) -> Option<f32> {
     Some(1.0 - factor * mean as f32).filter(|v| v.is_finite())
 }
 
-/// Index of refraction and specular colour, where the kind has them.
+/// Index of refraction and specular colour, if the material model has them.
 fn reflective(from: &From, is_phong: bool, material: Material) -> Material {
     if is_phong || from.shader_type == ShaderType::BlenderPhong {
         return material;
@@ -233,7 +233,7 @@ fn reflective(from: &From, is_phong: bool, material: Material) -> Material {
     }
 }
 
-/// Kinds that have a Phong exponent and no roughness.
+/// Whether the model has a Phong exponent instead of a roughness.
 fn is_phong(kind: ShaderType) -> bool {
     use ShaderType::*;
     matches!(kind, Unknown | FbxLambert | FbxPhong | WavefrontMtl)

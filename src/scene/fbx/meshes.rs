@@ -1,4 +1,4 @@
-//! Meshes: one of the scene for each mesh of the file and list of materials that its nodes give it.
+//! Meshes: one for each pair of a mesh in the file and the material list of its nodes.
 
 use glam::DVec2;
 use ufbx::{Mesh as From, VertexVec2};
@@ -15,16 +15,17 @@ use crate::scene::{Mesh, Submesh, Vertex};
 /// Corners that any file may have.
 pub(super) const MANY: usize = 1 << 24;
 
-/// A mesh of the file, and what its parts are made of.
+/// A mesh of the file with the materials of its parts.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Wanted {
-    /// A number in the file.
+    /// Index of the mesh in the file.
     pub mesh: u32,
-    /// Numbers of materials in the file, one for each part.
+    /// Indices of materials in the file, one per part.
     pub materials: Vec<u32>,
 }
 
-/// The meshes in order, what moves the vertices of those with a skin, and whether any part has no material: its number is the one after those of the file.
+/// The meshes in order, their rigs, and whether any part lacks a material. Such a part uses the
+/// index after the last material of the file.
 pub(super) fn read(
     file: &ufbx::Scene,
     wanted: &[Wanted],
@@ -33,7 +34,7 @@ pub(super) fn read(
     warnings: &mut Warnings,
     progress: Progress,
 ) -> Result<(Vec<RawMesh>, Rigs, bool), String> {
-    // Nodes may share meshes; a small file must not fill the memory.
+    // Nodes may share meshes, so a small file could otherwise fill the memory.
     let mut room = MANY + bytes;
     let mut used = false;
     let (mut meshes, mut rigs) = (Vec::new(), Rigs::new());
@@ -112,7 +113,7 @@ pub(super) fn read(
     Ok((meshes, rigs, used))
 }
 
-/// Its own name, or that of its first node.
+/// Its name, or the name of its first node.
 fn name(from: &From) -> String {
     let own = from.element.name.as_ref();
     let node = from
@@ -134,18 +135,18 @@ fn damaged() -> String {
 
 struct Reader<'a> {
     from: &'a From,
-    /// Whether it is read as it is before skins and blend shapes move it.
+    /// Whether skins or blend shapes deform it.
     is_rigged: bool,
-    /// Three a triangle.
+    /// Three per triangle.
     corners: Vec<Vertex>,
-    /// The vertex of each corner, if it is.
+    /// The source vertex of each corner, if the mesh is rigged.
     sources: Vec<u32>,
-    /// Indices of the triangles of one face.
+    /// Triangle indices of one face.
     triangles: Vec<u32>,
 }
 
 impl Reader<'_> {
-    /// Adds faces of one material; none if one of them is broken.
+    /// Adds faces of one material; `None` if a face is invalid.
     fn add(&mut self, faces: &[u32], material: Option<&Read>) -> Option<()> {
         let no_sources = Default::default();
         let sources = material.map_or(&no_sources, |read| &read.uv);
@@ -204,7 +205,7 @@ impl Reader<'_> {
     }
 }
 
-/// The set that a source names, or the first one.
+/// The named coordinate set, or the first one.
 fn set<'a>(from: &'a From, source: Option<&'a UvSource>) -> Option<Set<'a>> {
     let source = source?;
     let sets = from.uv_sets.as_ref();
@@ -218,7 +219,7 @@ fn set<'a>(from: &'a From, source: Option<&'a UvSource>) -> Option<Set<'a>> {
     })
 }
 
-/// Texture coordinates of a mesh, placed as a texture asks for.
+/// Texture coordinates of a mesh with a texture's transform.
 #[derive(Clone, Copy)]
 struct Set<'a> {
     values: &'a VertexVec2,
@@ -226,7 +227,7 @@ struct Set<'a> {
 }
 
 impl Set<'_> {
-    /// The origin of FBX is the lower left of the picture, that of scenes the upper left.
+    /// FBX has its origin at the lower left of the picture, scenes at the upper left.
     fn at(&self, corner: usize) -> Option<[f32; 2]> {
         let index = *self.values.indices.as_ref().get(corner)?;
         let uv = self.values.values.as_ref().get(index as usize)?;
@@ -246,7 +247,7 @@ fn vector_at(list: &ufbx::VertexVec3, index: usize) -> Option<[f32; 3]> {
     Some([value.x as f32, value.y as f32, value.z as f32])
 }
 
-/// The colour of a corner; white where there is none.
+/// The colour of a corner; white by default.
 fn color(from: &From, index: usize) -> Option<[f32; 4]> {
     let colors = &from.vertex_color;
     Some(if colors.exists {

@@ -35,7 +35,7 @@ const MAX_BYTES: u64 = 4 << 30;
 
 /// Geometry, materials, textures, lights and cameras of an FBX file; no sky.
 ///
-/// `clip`: the name of the animation that is played, where it is not the first.
+/// `clip` names the animation to play instead of the first.
 pub(super) fn load(
     path: &Path,
     clip: Option<&str>,

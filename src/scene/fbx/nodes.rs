@@ -16,31 +16,31 @@ use crate::scene::obj::shown;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Camera, Instance, Mover, Scene};
 
-/// A node to visit, and the frame of its parent.
+/// A node to visit with its parent's frame.
 struct Visit<'a> {
     node: &'a Node,
-    /// The frame that its parent moves with.
+    /// The moving frame of its parent.
     mover: Option<u32>,
-    /// Where its parent is in that.
+    /// Transform of its parent in that frame.
     above: DAffine3,
     visible: bool,
 }
 
-/// Where nodes are, by number: in which moving frame, and where there.
+/// Moving frame and transform of each node by number.
 pub(super) type Frames = HashMap<u32, (Option<u32>, Mat4)>;
 
 /// The content of the hierarchy.
 pub(super) struct Placed<'a> {
     /// Instances, lights and cameras.
     pub scene: Scene,
-    /// The meshes that instances name.
+    /// The meshes of the instances.
     pub wanted: Vec<Wanted>,
     pub frames: Frames,
     /// Instances of meshes with a skin or blend shapes.
     pub rigged: Vec<(usize, &'a Mesh)>,
 }
 
-/// Instances, lights and cameras, and the meshes that instances name.
+/// Instances, lights and cameras, and the meshes of the instances.
 pub(super) fn place<'a>(
     file: &'a ufbx::Scene,
     motion: &Motion,
@@ -95,7 +95,7 @@ pub(super) fn place<'a>(
                 .instances
                 .push(instance(node, mesh as u32, &name, (mover, here))?);
         }
-        // Lights and cameras stand where they are at the start.
+        // Lights and cameras keep their transform at time 0.
         let moves = mover.is_some() && (node.light.is_some() || node.camera.is_some());
         let start = match moves {
             true => DAffine3::from_mat4(placed.moved(mover, placement(&here), 0.0).as_dmat4()),
@@ -126,7 +126,7 @@ pub(super) fn place<'a>(
             );
         }
         let children = node.children.as_ref();
-        // Levels of detail show the same thing; the first is the finest.
+        // The children of a LOD group are alternatives; the first is the finest.
         let children = if node.attrib_type == ElementType::LodGroup && children.len() > 1 {
             warnings.add("of levels of detail the first is shown", &name);
             children.get(..1).unwrap_or_default()
@@ -141,7 +141,7 @@ pub(super) fn place<'a>(
         };
         stack.extend(children.iter().rev().map(below));
     }
-    // The camera through which the author looked comes first.
+    // The author's active camera comes first.
     if let Some(own) = placed
         .cameras
         .get_index_of(file.settings.default_camera.as_ref())
@@ -186,7 +186,7 @@ fn instance(
     })
 }
 
-/// Its own name; helpers of ufbx have that of their parent.
+/// Its name; helper nodes of ufbx have their parent's name.
 fn name(node: &Node) -> String {
     let own = match &node.parent {
         Some(parent) if node.is_scale_helper || node.is_geometry_transform_helper => {
@@ -207,7 +207,7 @@ fn is_visible(node: &Node, above: bool) -> bool {
     node.visible && (above || !inherits)
 }
 
-/// Cameras look along x.
+/// FBX cameras look along +x.
 fn camera(from: &From, world: &DAffine3, unit: f64) -> Option<Camera> {
     if from.projection_mode != ProjectionMode::Perspective {
         return None;

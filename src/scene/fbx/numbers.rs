@@ -1,9 +1,9 @@
-//! Numbers of ufbx as the scene has them.
+//! Conversion of ufbx vectors and transforms.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, Mat4, Vec3};
 use ufbx::{Matrix, Transform};
 
-/// A matrix of three columns and a translation.
+/// A 3x4 matrix.
 pub(super) fn affine(m: &Matrix) -> DAffine3 {
     DAffine3 {
         matrix3: DMat3::from_cols(
@@ -20,7 +20,7 @@ pub(super) fn placed(translation: ufbx::Vec3, rotation: ufbx::Quat, scale: ufbx:
     let rotation = DQuat::from_xyzw(rotation.x, rotation.y, rotation.z, rotation.w);
     DAffine3::from_scale_rotation_translation(
         vector(scale),
-        // Without a length it turns nothing.
+        // A quaternion of zero length becomes the identity.
         if rotation.is_finite() && rotation.length_squared() > 0.0 {
             rotation.normalize()
         } else {
@@ -30,7 +30,7 @@ pub(super) fn placed(translation: ufbx::Vec3, rotation: ufbx::Quat, scale: ufbx:
     )
 }
 
-/// The frame of a node's own numbers.
+/// The local transform of a node.
 pub(super) fn frame(t: &Transform) -> DAffine3 {
     placed(t.translation, t.rotation, t.scale)
 }
@@ -39,12 +39,12 @@ pub(super) fn vector(v: ufbx::Vec3) -> DVec3 {
     DVec3::new(v.x, v.y, v.z)
 }
 
-/// A placement in the scene's precision.
+/// A transform in single precision.
 pub(super) fn placement(m: &DAffine3) -> Mat4 {
     glam::DMat4::from(*m).as_mat4()
 }
 
-/// A colour of finite numbers at or above 0.
+/// A finite, non-negative colour.
 pub(super) fn color(v: DVec3) -> Option<Vec3> {
     Some(v.as_vec3())
         .filter(|v| v.is_finite())

@@ -1,4 +1,4 @@
-//! Pictures of materials: files that the document names or holds.
+//! Textures of materials: external files or embedded content.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -14,22 +14,22 @@ use crate::scene::texture::{MAX_FILE_BYTES, Requests, Source};
 use crate::scene::warnings::Warnings;
 use crate::scene::{Lookup, Wrap};
 
-/// Finds pictures and requests them.
+/// Finds and requests textures.
 pub(super) struct Pictures<'a> {
     /// The name of the document.
     name: &'a str,
     finder: Finder,
     pub requests: &'a mut Requests,
-    /// Pictures in the document, by where their bytes begin and how many they are.
+    /// Embedded files by address and length.
     held: HashMap<(usize, usize), Source>,
 }
 
-/// A picture with the place of its coordinates.
+/// A texture with its coordinate source.
 pub(super) struct Laid {
     pub image: Source,
     pub source: UvSource,
     pub lookup: Lookup,
-    /// Whether nothing is there.
+    /// Whether the file is missing.
     pub is_missing: bool,
 }
 
@@ -43,7 +43,7 @@ impl<'a> Pictures<'a> {
         }
     }
 
-    /// The picture of a texture; of layers the first one.
+    /// The texture; of a layered texture, the first layer.
     pub fn find(&mut self, texture: &Texture, warnings: &mut Warnings) -> Option<Laid> {
         let name = shown(&texture.element.name);
         let Some(file) = texture.file_textures.into_iter().next() else {
@@ -86,7 +86,8 @@ impl<'a> Pictures<'a> {
         })
     }
 
-    /// The bytes in the document, or the file by its relative name, or by the one on its author's machine.
+    /// Embedded bytes, or the file at its relative path, or at its absolute path on the author's
+    /// machine.
     fn image(&mut self, file: &Texture, warnings: &mut Warnings) -> (Source, bool) {
         let texts = [
             file.relative_filename.as_ref(),

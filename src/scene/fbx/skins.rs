@@ -9,12 +9,12 @@ use crate::scene::obj::shown;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Influence, Joint};
 
-/// The skin that moves a mesh; of several the first.
+/// The skin that moves a mesh; the first of several.
 pub(super) fn of(mesh: &Mesh) -> Option<&SkinDeformer> {
     mesh.skin_deformers.into_iter().next()
 }
 
-/// Adds the bones of a mesh's vertices to its rig, by their numbers in the file.
+/// Adds the bone influences of a mesh's vertices to its rig, by bone number in the file.
 pub(super) fn add(rig: &mut Rig, mesh: &Mesh, skin: &SkinDeformer, warnings: &mut Warnings) {
     if matches!(
         skin.skinning_method,
@@ -48,7 +48,7 @@ pub(super) fn add(rig: &mut Rig, mesh: &Mesh, skin: &SkinDeformer, warnings: &mu
     }
 }
 
-/// The bones of a skin, where nodes have them.
+/// The joints of a skin whose bones have nodes.
 pub(super) fn joints(skin: &SkinDeformer, frames: &Frames, warnings: &mut Warnings) -> Vec<Joint> {
     let joint = |cluster: &ufbx::SkinCluster| {
         let inverse_bind = placement(&affine(&cluster.geometry_to_bone));

@@ -1,11 +1,11 @@
-//! Warnings about content that is left out.
+//! Warnings about content that is dropped.
 
 use ufbx::{ElementType, Material, MaterialMap, ShaderType};
 
 use crate::scene::obj::shown;
 use crate::scene::warnings::Warnings;
 
-/// Names of elements that are left out, by kind.
+/// Warns about each kind of dropped element, with names.
 pub(super) fn warn(file: &ufbx::Scene, warnings: &mut Warnings) {
     for element in &file.elements {
         let what = match element.type_ {
@@ -41,12 +41,12 @@ pub(super) fn warn(file: &ufbx::Scene, warnings: &mut Warnings) {
     }
 }
 
-/// Whether a channel has several shapes by its weight.
+/// Whether a channel blends several shapes by its weight.
 fn has_steps(element: &ufbx::Element) -> bool {
     ufbx::as_blend_channel(element).is_some_and(|channel| channel.keyframes.len() > 1)
 }
 
-/// The kind of a material, if it is unknown, and its maps and layers that are left out.
+/// Warns about an unknown material model and dropped maps or layers.
 pub(super) fn warn_of_material(from: &Material, is_phong: bool, warnings: &mut Warnings) {
     let name = shown(&from.element.name);
     if matches!(

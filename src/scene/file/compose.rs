@@ -1,29 +1,29 @@
-//! Adding models to a scene: indices are shifted, everything is placed.
+//! Adding models to a scene: indices are shifted and everything is placed.
 
 use glam::{Mat4, Vec3};
 
 use super::ModelEntry;
 use crate::scene::{Environment, Instance, Mover, Scene};
 
-/// Moving frames of a scene: each placement of a model has its own.
+/// Maximum number of moving frames in a scene; each placement of a model has its own.
 const MAX_MOVERS: usize = 1 << 20;
 
-/// A model whose meshes, materials and textures a scene has: it can be placed many times.
+/// A model whose meshes, materials and textures are in the scene. It can be placed many times.
 pub(super) struct Added {
-    /// Instances, lights and cameras, with the scene's numbers of meshes.
+    /// Instances, lights and cameras, with mesh indices of the scene.
     pub model: Scene,
-    /// Its extent before it is placed.
+    /// Its bounds before placement.
     pub bounds: (Vec3, Vec3),
 }
 
 impl Added {
-    /// Radiance and picture of the model's own sky.
+    /// Radiance and environment map of the model's sky.
     pub fn sky(&self) -> (Vec3, Option<Environment>) {
         (self.model.sky, self.model.environment.clone())
     }
 }
 
-/// Moves what a model has of meshes, materials, textures and warnings into a scene.
+/// Moves meshes, materials, textures and warnings of a model into a scene.
 pub(super) fn add(scene: &mut Scene, mut model: Scene) -> Added {
     let bounds = model.bounds();
     let first_mesh = scene.meshes.len() as u32;
@@ -54,7 +54,7 @@ pub(super) fn add(scene: &mut Scene, mut model: Scene) -> Added {
         .for_each(|instance| instance.mesh += first_mesh);
     let mut deformers = std::mem::take(&mut model.deformers);
     if !deformers.is_empty() {
-        // Skins follow frames in the model's own space, whatever it is placed by.
+        // Skins follow frames in the model's space, independent of its placement.
         let first = add_movers(scene, &model.movers, None, Mat4::IDENTITY);
         for deformer in &mut deformers {
             deformer.mesh += first_mesh;
@@ -68,7 +68,7 @@ pub(super) fn add(scene: &mut Scene, mut model: Scene) -> Added {
     Added { model, bounds }
 }
 
-/// Adds instances, lights and cameras of a model, placed and moved as its entry says.
+/// Adds instances, lights and cameras of a model with the placement and motion of its entry.
 pub(super) fn add_placed(scene: &mut Scene, model: &Scene, entry: &ModelEntry) {
     let frame = entry.transform;
     let own = entry.motion.clone().map(|track| {
@@ -122,7 +122,7 @@ pub(super) fn add_placed(scene: &mut Scene, model: &Scene, entry: &ModelEntry) {
         camera.eye = frame.transform_point3(camera.eye);
         camera.target = frame.transform_point3(camera.target);
         camera.up = frame.transform_vector3(camera.up).normalize_or(camera.up);
-        // The first of a name keeps it; later ones say which model they are of.
+        // The first camera keeps its name; later ones get the model's name as a prefix.
         let taken = scene.cameras.contains_key(&name);
         scene.cameras.insert(
             if taken {
@@ -135,7 +135,8 @@ pub(super) fn add_placed(scene: &mut Scene, model: &Scene, entry: &ModelEntry) {
     }
 }
 
-/// Adds a model's movers, those in its world moved with `parent` and placed by `frame`; the number of the first.
+/// Adds a model's movers and returns the index of the first. Root movers get the parent `parent`
+/// and the placement `frame`.
 fn add_movers(scene: &mut Scene, movers: &[Mover], parent: Option<u32>, frame: Mat4) -> u32 {
     let first = scene.movers.len() as u32;
     scene

@@ -1,4 +1,5 @@
-//! The shape of a scene file. Values are checked while they are read, so that errors have a line and a column.
+//! Structure of a scene file. Values are checked during parsing, so that errors have a line and a
+//! column.
 
 use std::sync::Arc;
 
@@ -18,17 +19,17 @@ pub(super) struct SceneFile {
     pub name: Option<String>,
     pub models: Vec<ModelEntry>,
     pub lights: Vec<LightEntry>,
-    /// Radiance; without it, that of the first model.
+    /// Radiance of the sky; defaults to that of the first model.
     pub sky: Option<Sky>,
-    /// A picture that multiplies the radiance.
+    /// Environment map, multiplied by the radiance.
     pub environment: Option<EnvironmentEntry>,
     pub cameras: IndexMap<String, CameraEntry>,
     pub materials: IndexMap<String, Material>,
     pub textures: Vec<Picture>,
-    /// Parts that meshes and other groups share.
+    /// Named lists of parts, for meshes and other groups.
     pub groups: IndexMap<String, Vec<Part>>,
     pub meshes: IndexMap<String, Vec<Part>>,
-    /// Placements; a mesh without any stands where it was built.
+    /// Placements; a mesh without any is placed as it was built.
     pub instances: Vec<InstanceEntry>,
 }
 
@@ -49,19 +50,19 @@ impl TryFrom<Vec3> for Sky {
     }
 }
 
-/// Where a picture of the sky comes from.
+/// Source of an environment map.
 #[derive(Clone, Debug)]
 pub(super) enum SkyOf {
     File(String),
     Clear(ClearSky),
 }
 
-/// A picture of the sky.
+/// An environment map.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(try_from = "EnvironmentFields")]
 pub(super) struct EnvironmentEntry {
     pub of: SkyOf,
-    /// Degrees about y.
+    /// Rotation about y [degrees].
     pub rotation: f32,
     pub intensity: f32,
 }
@@ -107,13 +108,13 @@ impl TryFrom<EnvironmentFields> for EnvironmentEntry {
     }
 }
 
-/// A model to load and where to put it.
+/// A model with its placement.
 #[derive(Debug, Deserialize)]
 #[serde(try_from = "ModelFields")]
 pub(super) struct ModelEntry {
     pub file: Option<String>,
     pub builtin: Option<String>,
-    /// The animation that is played, where it is not the first.
+    /// The animation to play instead of the first.
     pub clip: Option<String>,
     pub transform: Mat4,
     pub motion: Option<Arc<Track>>,
@@ -135,13 +136,13 @@ struct ModelFields {
     transform: Placed,
     #[serde(default)]
     animation: Option<Moves>,
-    /// Whether the model's own lights come along.
+    /// Whether to import the model's lights.
     #[serde(default = "yes")]
     lights: bool,
-    /// Factor of the colours of the model's own lights, for example 1/683 where they are photometric.
+    /// Factor of the model's light colours, for example 1/683 for photometric units.
     #[serde(default)]
     lights_scale: Option<f32>,
-    /// Whether the model's own cameras come along.
+    /// Whether to import the model's cameras.
     #[serde(default = "yes")]
     cameras: bool,
 }
@@ -150,7 +151,7 @@ fn yes() -> bool {
     true
 }
 
-/// Scaled, then turned about x, y and z, then moved.
+/// Scale, then rotation about x, y and z, then translation.
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct TransformFields {
@@ -169,7 +170,7 @@ impl Default for TransformFields {
     }
 }
 
-/// Motion of the placed model: each keyframe turns it about the world's origin, then moves it.
+/// Motion of the placed model: each keyframe rotates about the world's origin, then translates.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct AnimationFields {
@@ -250,7 +251,7 @@ impl TryFrom<AnimationFields> for Moves {
         let mut keyframes = Vec::new();
         for (i, key) in keys.iter().enumerate() {
             let before = if i == 0 { key } else { &keys[i - 1] };
-            // A quaternion forgets whole turns: steps of at most 90 degrees keep them.
+            // Quaternions do not represent full turns; steps of at most 90 degrees preserve them.
             let turn = (key.rotate_deg - before.rotate_deg).abs().max_element();
             let steps = (turn / 90.0).ceil().max(1.0) as u32;
             for step in (1..=steps).skip(if i == 0 { steps as usize - 1 } else { 0 }) {
@@ -267,7 +268,7 @@ impl TryFrom<AnimationFields> for Moves {
 }
 
 impl Default for ModelEntry {
-    /// Where it is, with all that it has.
+    /// The identity placement with lights and cameras.
     fn default() -> Self {
         ModelEntry {
             file: None,
@@ -420,7 +421,7 @@ impl TryFrom<LightFields> for LightEntry {
 }
 
 impl LightEntry {
-    /// The light, under a name of its own.
+    /// The light with a default name.
     pub fn to_light(&self, index: usize) -> Light {
         let mut light = self.0.clone();
         if light.name.is_empty() {
@@ -487,7 +488,7 @@ impl TryFrom<CameraFields> for CameraEntry {
 }
 
 impl CameraEntry {
-    /// The camera, with the given near plane where it has none of its own.
+    /// The camera; `near` is used if it has no near plane.
     pub fn to_camera(&self, near: f32) -> Camera {
         let CameraFields {
             eye,

@@ -1,4 +1,4 @@
-//! Scene files (RON): models, shapes, lights, sky and cameras put together.
+//! Scene files (RON): models, shapes, lights, sky and cameras.
 
 mod compose;
 mod format;
@@ -25,10 +25,10 @@ use format::{EnvironmentEntry, ModelEntry, SceneFile, SkyOf};
 /// Scene files larger than this are refused.
 const MAX_BYTES: u64 = 4 << 20;
 
-/// Characters of a message that may quote the file.
+/// Maximum length of an error message that quotes the file.
 const MAX_MESSAGE: usize = 400;
 
-/// Opens a scene file and everything that it names.
+/// Opens a scene file and all files that it names.
 pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
     let text = read_input_text(path, MAX_BYTES).map_err(|source| SceneError::Read {
         path: path.into(),
@@ -38,7 +38,7 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     read(&text, path, progress)
 }
 
-/// A scene by its file's text; the path is where other files are looked for, and for messages.
+/// Parses a scene file. `path` resolves relative paths and appears in messages.
 pub(super) fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene, SceneError> {
     let file = parse(text, path)?;
     let name = path
@@ -51,7 +51,7 @@ pub(super) fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene,
         ..Scene::default()
     };
     let (mut sky, mut picture) = (None, None);
-    // A model that stands in several places is read once, and its meshes are shared.
+    // Each model is read once; its placements share meshes.
     let mut added: BTreeMap<(bool, &str, Option<&str>), Added> = BTreeMap::new();
     for (i, entry) in file.models.iter().enumerate() {
         let named = entry
@@ -98,7 +98,7 @@ pub(super) fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene,
             )?);
             scene.sky = file.sky.map_or(Vec3::ONE, |s| s.0) * entry.intensity;
         }
-        // A radiance of its own takes the place of the first model's sky, picture and all.
+        // A sky radiance in the file replaces the first model's sky and environment map.
         None => {
             scene.environment = picture.filter(|_| file.sky.is_none());
             scene.sky = file.sky.map(|s| s.0).or(sky).unwrap_or(defaults::SKY);
@@ -137,7 +137,7 @@ fn open_environment(
         }
     };
     let candidates = places(file, scene_file);
-    // Where it is nowhere, the message is about the first place.
+    // If the file does not exist, the error names the first candidate.
     let found = candidates
         .iter()
         .find(|candidate| candidate.is_file())
@@ -191,7 +191,7 @@ fn load_model(
     Ok(model)
 }
 
-/// Where a model may be: beside the scene file, then in each folder of CONELAB_SCENES.
+/// Candidate paths of a file: the scene file's folder, then the folders of CONELAB_SCENES.
 fn places(file: &str, scene_file: &Path) -> Vec<PathBuf> {
     let mut places = vec![scene_file.parent().unwrap_or(Path::new("")).join(file)];
     let folders = std::env::var_os("CONELAB_SCENES").unwrap_or_default();
@@ -203,7 +203,7 @@ fn places(file: &str, scene_file: &Path) -> Vec<PathBuf> {
     places
 }
 
-/// What is wrong beside a quoted string of a scene file.
+/// An error at the position of a quoted string of the scene file.
 fn in_file(path: &Path, text: &str, near: &str, message: String) -> SceneError {
     let (line, column) = position_of(text, near);
     SceneError::SceneFile {
@@ -214,7 +214,7 @@ fn in_file(path: &Path, text: &str, near: &str, message: String) -> SceneError {
     }
 }
 
-/// Line and column of a quoted string, both from 1; (1, 1) when it is not there as it is.
+/// Line and column of a quoted string, from 1; (1, 1) if it does not occur verbatim.
 fn position_of(text: &str, string: &str) -> (usize, usize) {
     let Some(offset) = text.find(&format!("\"{string}\"")) else {
         return (1, 1);

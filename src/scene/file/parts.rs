@@ -1,4 +1,4 @@
-//! What a scene file says of its own shapes: materials, textures, meshes of parts that may repeat, and where they stand.
+//! Shapes of a scene file: materials, textures, meshes with repeated parts, and their placement.
 
 use std::f32::consts::TAU;
 
@@ -12,15 +12,15 @@ use crate::scene::progress::Progress;
 use crate::scene::shapes::*;
 use crate::scene::{Instance, MAX_COORDINATE, Material, Mover, Scene};
 
-/// Parts and places that are walked through, for all meshes.
+/// Parts and positions visited for all meshes.
 const MAX_PARTS: u32 = 1 << 18;
-/// Cells times boxes of a solid that take as long as a part at most: two seconds for all of a file.
+/// Solid work (cells times boxes) equivalent to one part; limits a file to about 2 s.
 const SOLID_WORK: usize = 1 << 9;
-/// Groups and repetitions inside of each other.
+/// Maximum nesting of groups and repetitions.
 const MAX_DEPTH: u32 = 16;
-/// Places of one repetition, and all instances.
+/// Positions of one repetition, and of all instances.
 const MAX_PLACES: u32 = 1 << 16;
-/// Textures that are drawn.
+/// Procedural textures per file.
 const MAX_TEXTURES: usize = 64;
 
 /// A part of a mesh.
@@ -37,7 +37,7 @@ pub(super) enum Part {
     Curtain(Curtain),
     Cylinder(Cylinder),
     Hip(Hip),
-    /// In a solid alone.
+    /// Only inside a solid.
     Hollow(Hollow),
     Lathe(Lathe),
     Level(Level),
@@ -52,29 +52,30 @@ pub(super) enum Part {
     Triangle(Triangle),
     Vase(Vase),
     Vault(Vault),
-    /// Boxes filled and hollowed out in order, without cracks.
+    /// Watertight union and difference of boxes, in order.
     Solid(Vec<Part>),
     /// The parts of a named group.
     Group(String),
-    /// Random numbers of what follows begin here.
+    /// Restarts the random numbers for the parts that follow.
     Seed(u64),
     Repeat(Repeat),
 }
 
-/// Parts at several places.
+/// Parts at several positions.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Repeat {
     #[serde(default)]
     at: Places,
-    /// Turned at each place: degrees about x, then y, then z; quarters of a turn about y are exact.
+    /// Rotation at each position: degrees about x, then y, then z; multiples of 90 about y are
+    /// exact.
     #[serde(default)]
     rotate_deg: Option<Vec3>,
     #[serde(default)]
     quarters: Option<u8>,
     #[serde(default)]
     scale: Option<Vec3>,
-    /// By how much each place counts on what picks from several materials, and seeds.
+    /// Increment per position of the index that selects materials and seeds.
     #[serde(default = "one")]
     counts: u32,
     parts: Vec<Part>,
@@ -84,23 +85,23 @@ fn one() -> u32 {
     1
 }
 
-/// Where something is repeated.
+/// Positions of a repetition.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) enum Places {
     At(Vec<Vec3>),
-    /// Steps and their numbers, the last one's fastest.
+    /// Steps and their counts; the last axis varies fastest.
     Grid {
         from: Vec3,
         steps: Vec<(Vec3, u32)>,
     },
-    /// From end to end.
+    /// Evenly from end to end.
     Line {
         from: Vec3,
         to: Vec3,
         count: u32,
     },
-    /// Around y, turned so that x looks outwards.
+    /// Around y, with x pointing outwards.
     Circle {
         radius: f32,
         count: u32,
@@ -114,7 +115,7 @@ impl Default for Places {
 }
 
 impl Places {
-    /// Turns about y, in radians, and places.
+    /// Rotations about y [radians] and positions.
     fn list(&self) -> Result<Vec<(f32, Vec3)>, String> {
         let count = match self {
             Places::At(list) => list.len() as u64,
@@ -161,28 +162,25 @@ impl Places {
     }
 }
 
-/// Placements of meshes that are more than one in the world, or move.
+/// Placements of a mesh that occurs more than once or moves.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InstanceEntry {
-    /// One after another at each place.
+    /// Cycled over the positions.
     meshes: Vec<String>,
-    /// In place of the mesh's.
+    /// Replaces the mesh's name.
     #[serde(default)]
     name: Option<String>,
     #[serde(default)]
     transform: Placed,
     #[serde(default)]
     animation: Option<Moves>,
-    /// Where the transform puts it, each moved; with them, names are numbered.
+    /// Positions in the frame of the transform, each moved; several instances get numbered names.
     #[serde(default)]
     at: Option<Places>,
 }
 
-/// The materials, textures, meshes and instances of a file's own.
-///
-/// # Errors
-/// What is wrong, and a name in the file near to it.
+/// Builds the materials, textures, meshes and instances that a scene file defines itself.
 pub(super) fn build(file: &SceneFile, progress: Progress) -> Result<Scene, Problem> {
     let wrong = |near: &str, message: String| Problem {
         near: near.into(),
@@ -226,7 +224,7 @@ pub(super) fn build(file: &SceneFile, progress: Progress) -> Result<Scene, Probl
     let dropped;
     (scene.meshes, dropped) =
         prepare_all(raw, &scene.materials, progress).map_err(|m| wrong("", m))?;
-    // At the poles of what turns about an axis there are triangles without area.
+    // Surfaces of revolution have degenerate triangles at the poles.
     scene.warnings.extend(
         Dropped {
             no_area: 0,
@@ -239,7 +237,7 @@ pub(super) fn build(file: &SceneFile, progress: Progress) -> Result<Scene, Probl
 }
 
 fn place_all(file: &SceneFile, scene: &mut Scene) -> Result<(), Problem> {
-    // Those that no entry places stand where they were built.
+    // Meshes without a placement are instantiated once, as built.
     let mut entries: Vec<(u32, &str)> = (0..).zip(file.meshes.keys().map(String::as_str)).collect();
     entries.retain(|(_, name)| {
         !file
@@ -305,7 +303,7 @@ fn place_all(file: &SceneFile, scene: &mut Scene) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Goes through parts, groups and repetitions.
+/// Traverses parts, groups and repetitions.
 struct Walk<'a> {
     groups: &'a IndexMap<String, Vec<Part>>,
     left: u32,
@@ -313,7 +311,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Adds parts where a frame and a place in it say; boxes to the solid, if they are of one.
+    /// Adds parts under a transform; boxes inside a solid are added to it.
     fn parts(
         &mut self,
         parts: &[Part],

@@ -1,14 +1,15 @@
-//! Accessors as vectors of numbers. Every range is checked: counts and offsets come from the file.
+//! Accessors as vectors of numbers. Every range is checked, because counts and offsets are
+//! untrusted.
 
 use ::gltf::Accessor;
 use ::gltf::accessor::{DataType, Dimensions, sparse::IndexType};
 
 use super::buffers::{Buffers, view};
 
-/// Largest accessor without a buffer view, whose size nothing else bounds.
+/// Largest accessor without a buffer view; nothing else bounds its size.
 const MAX_ZEROS: usize = 1 << 22;
 
-/// Vectors of N floats; normalised integers become -1 to 1 or 0 to 1.
+/// Vectors of N floats; normalised integers map to -1..1 or 0..1.
 pub(super) fn floats<const N: usize>(
     accessor: &Accessor,
     buffers: &Buffers,

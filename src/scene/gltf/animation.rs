@@ -1,4 +1,4 @@
-//! Tracks of nodes and of the weights of their morph targets.
+//! Tracks of nodes and morph target weights.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -13,21 +13,22 @@ use crate::scene::clips;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Curve, Interpolation, Rest, Track, Value};
 
-/// Keys of all channels: a small file may name one list of times in each of many.
+/// Total keys of all channels; channels may share one list of times, so a small file could have
+/// many.
 const MAX_KEYS: usize = 1 << 22;
 
-/// The motion in a document, by node.
+/// The motion of a document, by node.
 #[derive(Default)]
 pub(super) struct Tracks {
     nodes: HashMap<usize, Track>,
-    /// A curve for each target, and the period.
+    /// A curve per morph target, and the period.
     weights: HashMap<usize, (Vec<Curve<f32>>, Option<f32>)>,
-    /// Keys so far.
+    /// Keys read so far.
     keys: usize,
 }
 
 impl Tracks {
-    /// How a node moves, if it does.
+    /// The track of a node, if it moves.
     pub fn of(&self, node: &Node) -> Option<Arc<Track>> {
         let track = self.nodes.get(&node.index())?.clone();
         let (translation, rotation, scale) = node.transform().decomposed();
@@ -39,14 +40,14 @@ impl Tracks {
         Some(Arc::new(Track { rest, ..track }))
     }
 
-    /// The weights of a node's morph targets, if they move.
+    /// The animated morph weights of a node.
     pub fn weights(&self, node: &Node) -> Option<&(Vec<Curve<f32>>, Option<f32>)> {
         self.weights.get(&node.index())
     }
 }
 
-/// All animations that move nothing which an earlier one moves: others are clips to choose from, and the first is played,
-/// or the one with the name of `clip`.
+/// All animations that target different nodes than earlier ones. Others are alternatives: the first
+/// is played, or the one named `clip`.
 pub(super) fn tracks(
     document: &Document,
     buffers: &Buffers,
@@ -61,7 +62,7 @@ pub(super) fn tracks(
     let names: Vec<String> = document.animations().map(|a| name(&a)).collect();
     let chosen = clip.map(|clip| clips::number(clip, &names)).transpose()?;
     let mut animations: Vec<Animation> = document.animations().collect();
-    // The sort is stable.
+    // Ties keep their order, because the sort is stable.
     animations.sort_by_key(|a| Some(a.index()) != chosen);
     for animation in animations {
         let called = name(&animation);
@@ -77,7 +78,7 @@ pub(super) fn tracks(
     Ok(tracks)
 }
 
-/// The time of its last key: all of its channels start over together.
+/// The time of the last key; all channels share it as their period.
 fn period(animation: &Animation, buffers: &Buffers) -> Result<Option<f32>, String> {
     let mut last = 0f32;
     for sampler in animation.samplers() {
@@ -115,7 +116,7 @@ impl Tracks {
             .into_iter()
             .map(|[t]| t)
             .collect();
-        // Weights have a list of times for each target.
+        // Weights have one value per target and key.
         let targets = node
             .mesh()
             .and_then(|m| m.primitives().map(|p| p.morph_targets().len()).max())
@@ -188,7 +189,7 @@ impl Keys {
     }
 
     fn rotation(self, values: Vec<[f32; 4]>) -> Result<Curve<Quat>, String> {
-        // Tangents of cubic curves are no rotations.
+        // Tangents of cubic curves are not unit quaternions.
         let cubic = self.interpolation == animation::Interpolation::CubicSpline;
         self.curve(
             values,
@@ -196,7 +197,7 @@ impl Keys {
         )
     }
 
-    /// One curve a target, of values key by key.
+    /// One curve per target, from values stored key by key.
     fn weights(self, values: Vec<f32>, targets: usize) -> Result<Vec<Curve<f32>>, String> {
         let of_target = |target: usize| {
             let values: Vec<f32> = values
@@ -221,7 +222,8 @@ impl Keys {
     }
 }
 
-/// Numbers near the largest have no finite length, and all of zero turn nothing; what is not finite stays so.
+/// Normalises a quaternion, without overflow of its length. Zero gives the identity; non-finite
+/// values are returned as they are.
 fn unit(q: [f32; 4]) -> Quat {
     let q = Vec4::from_array(q);
     if !q.is_finite() {

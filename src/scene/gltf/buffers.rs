@@ -1,4 +1,4 @@
-//! Buffers and URIs: the binary chunk, files beside the model and data inside of it.
+//! Buffers and URIs: the binary chunk, external files and embedded data.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -14,26 +14,26 @@ use crate::files::read_input;
 use crate::scene::progress::Progress;
 use crate::scene::texture::Source;
 
-/// Buffers larger than this are refused; a binary file cannot have more.
+/// Largest buffer; a binary file cannot hold more.
 pub(super) const MAX_BYTES: u64 = 4 << 30;
 
 /// Decoded bytes that any file may have, and how many more for each byte of its buffers.
 const DECODED: usize = 1 << 28;
 const DECODED_PER_BYTE: usize = 64;
 
-/// What a document's numbers are read from.
+/// Buffers and decoded views of a document.
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
-    /// The bytes of each buffer, at least as many as the file says; or why there are none.
+    /// The bytes of each buffer, at least as many as declared, or an error.
     bytes: Vec<Result<Vec<u8>, String>>,
-    /// The bytes of compressed views by index, or the problem of a damaged one.
+    /// Decompressed views by index, or an error.
     decoded: HashMap<usize, Result<Vec<u8>, String>>,
-    /// Accessors of a type that the format does not have.
+    /// Accessors of unknown type.
     pub unreadable: HashSet<usize>,
 }
 
 impl Buffers {
-    /// Reads the buffers. One that cannot be read is a mistake only where something in it is used.
+    /// Reads the buffers. A missing buffer is an error only if something uses it.
     pub fn load(
         document: &Document,
         mut blob: Option<Vec<u8>>,
@@ -83,7 +83,7 @@ impl Buffers {
         buffers
     }
 
-    /// Bytes of all buffers and of all that is decoded.
+    /// Total bytes of the buffers and the decoded views.
     pub fn len(&self) -> usize {
         self.bytes
             .iter()
@@ -94,7 +94,7 @@ impl Buffers {
     }
 }
 
-/// Decodes the compressed views. One that is damaged is a mistake only where it is used.
+/// Decodes the compressed views. A damaged view is an error only if something uses it.
 fn decode(document: &Document, buffers: &Buffers) -> HashMap<usize, Result<Vec<u8>, String>> {
     let compressed: Vec<_> = document
         .views()
@@ -103,7 +103,7 @@ fn decode(document: &Document, buffers: &Buffers) -> HashMap<usize, Result<Vec<u
     let mut room = DECODED
         .saturating_add(buffers.len().saturating_mul(DECODED_PER_BYTE))
         .min(MAX_BYTES as usize);
-    // Views may share their compressed bytes; a small file must not fill the memory.
+    // Views may share compressed bytes, so a small file could otherwise fill the memory.
     let mut fits = |size: usize| {
         let left = room.checked_sub(size);
         room = left.unwrap_or(room);
@@ -138,7 +138,7 @@ fn decode(document: &Document, buffers: &Buffers) -> HashMap<usize, Result<Vec<u
     compressed.into_par_iter().zip(fitting).map(one).collect()
 }
 
-/// The bytes of a view, or what is wrong with it.
+/// The bytes of a view.
 pub(super) fn view<'a>(buffers: &'a Buffers, view: &buffer::View) -> Result<&'a [u8], String> {
     match buffers.decoded.get(&view.index()) {
         Some(decoded) => decoded.as_deref().map_err(String::clone),
@@ -158,14 +158,14 @@ fn range(buffers: &Buffers, buffer: usize, offset: usize, length: usize) -> Resu
         .ok_or_else(|| "it reaches past the end of its buffer".into())
 }
 
-/// Where an image's bytes are.
+/// The source of an image's bytes.
 pub(super) fn image(
     image: &::gltf::Image,
     document: &Document,
     buffers: &Buffers,
     folder: &Path,
 ) -> Source {
-    // By its JSON: the crate's own accessor requires a media type that files leave out.
+    // From the JSON, because the crate's accessor requires a media type that files omit.
     let json = &document.as_json().images[image.index()];
     let name = image
         .name()
@@ -212,7 +212,7 @@ fn resolve(uri: &str, folder: &Path) -> Result<Target, String> {
     Ok(Target::File(folder.join(decoded)))
 }
 
-/// RFC 3986 percent decoding; a stray percent sign stays.
+/// RFC 3986 percent decoding; a stray percent sign is kept.
 fn percent(text: &str) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();

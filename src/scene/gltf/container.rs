@@ -1,6 +1,6 @@
 //! The binary container (GLB, glTF 2.0 specification, section 4).
 
-/// The JSON of a file, and the binary chunk where it is a container with one.
+/// The JSON of a file, and the binary chunk of a container.
 pub(super) fn split(bytes: &[u8]) -> Result<(&[u8], Option<Vec<u8>>), String> {
     if !bytes.starts_with(b"glTF") {
         return Ok((bytes, None));
@@ -11,7 +11,7 @@ pub(super) fn split(bytes: &[u8]) -> Result<(&[u8], Option<Vec<u8>>), String> {
             "it is a binary file of version {version}, and 2 is read"
         ));
     }
-    // What follows the container is not part of it.
+    // Trailing bytes are not part of the container.
     let whole = bytes
         .get(..length)
         .ok_or_else(|| format!("it has {} bytes of {length}: it is cut short", bytes.len()))?;

@@ -1,6 +1,6 @@
-//! From a file's bytes to a document that the gltf crate can be asked about without a panic.
+//! From a file's bytes to a document that the gltf crate can traverse without panics.
 //!
-//! The crate refuses more than the specification does, so what the format leaves to defaults is written out first.
+//! The crate is stricter than the specification, so defaults of the format are written out first.
 
 use std::collections::HashSet;
 
@@ -13,11 +13,11 @@ use super::container::split;
 use super::supported;
 use crate::scene::warnings::Warnings;
 
-/// A document that has been checked.
+/// A checked document.
 pub(super) struct Checks {
     pub document: Document,
     pub blob: Option<Vec<u8>>,
-    /// Accessors of a type that the format does not have: whoever needs one fails.
+    /// Accessors of a type that the format does not define; using one is an error.
     pub unreadable: HashSet<usize>,
     pub warnings: Warnings,
 }
@@ -67,7 +67,7 @@ fn check_version(value: &Value) -> Result<(), String> {
     }
 }
 
-/// Writes out what the format leaves to defaults and the crate asks for.
+/// Writes out defaults of the format that the crate requires.
 fn write_out(value: &mut Value, warnings: &mut Warnings) {
     whole_numbers(value);
     let Some(root) = value.as_object_mut() else {
@@ -141,7 +141,7 @@ fn write_out(value: &mut Value, warnings: &mut Warnings) {
     }
 }
 
-/// Without a node, an extension says what is moved.
+/// Whether a channel targets a node; without one, an extension names the target.
 fn moves_a_node(target: &Value) -> bool {
     let path = target
         .get("path")
@@ -150,7 +150,7 @@ fn moves_a_node(target: &Value) -> bool {
     target.get("node").is_some() && ["translation", "rotation", "scale", "weights"].contains(&path)
 }
 
-/// JSON has one kind of number: 1.0 is an index as good as 1.
+/// JSON does not distinguish 1.0 from 1; converts whole floats to integers.
 fn whole_numbers(value: &mut Value) {
     match value {
         Value::Array(list) => list.iter_mut().for_each(whole_numbers),
@@ -171,7 +171,8 @@ fn whole_numbers(value: &mut Value) {
     }
 }
 
-/// The crate's own validation, without what the format allows; the accessors that have no known type.
+/// The crate's validation, minus the cases that the format allows; returns accessors of unknown
+/// type.
 fn validate(root: &Root) -> Result<HashSet<usize>, String> {
     let mut unreadable = HashSet::new();
     let mut wrong = Vec::new();
@@ -184,7 +185,7 @@ fn validate(root: &Root) -> Result<HashSet<usize>, String> {
         match (error, accessor) {
             (Error::Missing, Some((_, "bufferView"))) => {}
             (Error::Missing, _) if path.ends_with("attributes[\"POSITION\"]") => {}
-            // Bounds are computed.
+            // Missing bounds are computed.
             _ if [".min", ".max"].iter().any(|end| path.ends_with(end)) => {}
             (Error::Invalid, Some((number, "type" | "componentType"))) => {
                 unreadable.extend(number.parse::<usize>());
@@ -206,7 +207,7 @@ fn validate(root: &Root) -> Result<HashSet<usize>, String> {
     }
 }
 
-/// What the crate's validation does not look at, or breaks at.
+/// Additional checks where the crate's validation is incomplete or panics.
 fn check(root: &Root) -> Result<(), String> {
     for (i, mesh) in root.meshes.iter().enumerate() {
         for primitive in &mesh.primitives {

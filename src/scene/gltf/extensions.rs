@@ -1,4 +1,4 @@
-//! What KHR_materials_* say beyond the core, and what of it is left out.
+//! The KHR_materials_* extensions, and warnings about unsupported ones.
 
 use ::gltf::Material as From;
 use glam::Vec3;
@@ -9,7 +9,8 @@ use super::means::Means;
 use crate::scene::Material;
 use crate::scene::warnings::Warnings;
 
-/// What makes an extension matter, 0 by default: without it the material looks as if the extension were not there.
+/// Extensions with the property that activates them; at its default of 0 the extension has no
+/// effect.
 const MATTERS: [(&str, &str); 7] = [
     ("KHR_materials_anisotropy", "anisotropyStrength"),
     ("KHR_materials_clearcoat", "clearcoatFactor"),
@@ -23,7 +24,7 @@ const MATTERS: [(&str, &str); 7] = [
     ("KHR_materials_volume", "thicknessFactor"),
 ];
 
-/// A warning for each extension of the material that is left out.
+/// Warns about each active, unsupported extension of the material.
 pub(super) fn warn_of_others(from: &From, name: &str, warnings: &mut Warnings) {
     let others = from.extensions().into_iter().flatten();
     for (extension, _) in others.filter(|(extension, value)| matters(extension, value)) {
@@ -41,7 +42,8 @@ fn matters(extension: &str, value: &Value) -> bool {
         .is_some_and(|v| on(v) || v.as_array().is_some_and(|list| list.iter().any(on)))
 }
 
-/// KHR_materials_ior and KHR_materials_specular. Textures count with their mean: nobody else needs a lookup for them.
+/// KHR_materials_ior and KHR_materials_specular. Textures are reduced to their mean, because no
+/// other material needs the lookup.
 pub(super) fn specular(
     material: &mut Material,
     from: &From,
@@ -49,7 +51,7 @@ pub(super) fn specular(
     warnings: &mut Warnings,
 ) {
     if let Some(ior) = from.ior() {
-        // 0 stands for a surface that reflects everything; what is below 1 is no medium.
+        // 0 stands for full reflection; other values below 1 are not physical.
         material.ior = if ior == 0.0 { 0.0 } else { ior.clamp(1.0, 1e6) };
     }
     let Some(specular) = from.specular() else {
@@ -71,7 +73,8 @@ pub(super) fn specular(
     }
 }
 
-/// KHR_materials_transmission: a surface is there or it is not. Light is not bent, and takes no colour on.
+/// KHR_materials_transmission: surfaces become opaque or invisible. Refraction and tinted
+/// transmission are not supported.
 pub(super) fn transmission(
     material: &mut Material,
     from: &From,
@@ -82,7 +85,7 @@ pub(super) fn transmission(
         return;
     };
     let texture = transmission.transmission_texture();
-    // Metals let nothing through; where a texture says what is metal, nothing is assumed to be.
+    // Metals transmit nothing. A metallic texture is assumed to be non-metal.
     let metallic = if material.metallic_roughness_texture.is_some() {
         0.0
     } else {
@@ -106,13 +109,13 @@ pub(super) fn transmission(
     }
 }
 
-/// Makes it a mask that cuts everything out.
+/// Makes the material a mask that discards everything.
 fn leave_out(material: &mut Material) {
     material.alpha_cutoff = material.alpha_cutoff.max(0.5);
     material.base_color.w = 0.0;
 }
 
-/// KHR_materials_unlit: a surface that reflects nothing and emits its base colour, texture and all.
+/// KHR_materials_unlit: no reflection; the base colour and its texture become the emission.
 pub(super) fn unlit(material: &mut Material) {
     material.emission = material.base_color.truncate();
     material.emission_texture = material.base_color_texture;

@@ -1,4 +1,4 @@
-//! EXT_mesh_gpu_instancing: many places of one node's mesh.
+//! EXT_mesh_gpu_instancing: many transforms for one node's mesh.
 
 use ::gltf::{Document, Node};
 use glam::{Mat4, Quat, Vec3, Vec4};
@@ -6,10 +6,10 @@ use glam::{Mat4, Quat, Vec3, Vec4};
 use super::accessors;
 use super::buffers::Buffers;
 
-/// Instances of all nodes.
+/// Total instances of all nodes.
 pub(super) const MAX_INSTANCES: usize = 1 << 20;
 
-/// Where a node's mesh stands, in the space of the node; none without the extension.
+/// Instance transforms in the space of the node; `None` without the extension.
 pub(super) fn places(
     node: &Node,
     document: &Document,

@@ -12,10 +12,11 @@ use crate::scene::{Light, LightKind};
 /// Part of the warning about photometric units. Scene files that set this field drop the warning.
 pub(in crate::scene) const SCALE: &str = "lights_scale";
 
-/// An intensity from here on is photometric: a radiometric sun has about 1000 W/m^2, and a 60 W lamp 5 W/sr.
+/// Intensities from here on are probably photometric: a radiometric sun has about 1000 W/m^2, a 60
+/// W lamp 5 W/sr.
 const PHOTOMETRIC: f32 = 1000.0;
 
-/// A light as it is placed by its node, or why there is none.
+/// A light placed by its node, or the reason why it is dropped.
 pub(super) fn read(
     light: &From,
     name: &str,
@@ -62,7 +63,7 @@ pub(super) fn read(
     })
 }
 
-/// Warns of lights that are probably in lux and candela, as Blender writes them.
+/// Warns about lights that are probably in lux and candela, as Blender writes them.
 pub(super) fn warn_of_units(document: &Document, lights: &[Light], warnings: &mut Warnings) {
     let generator = document
         .as_json()

@@ -15,7 +15,8 @@ use crate::scene::texture::{Recipe, Requests, Source};
 use crate::scene::warnings::Warnings;
 use crate::scene::{Lookups, Material, SceneError};
 
-/// All materials, and after them the default one where a primitive has none; the coordinates that each reads.
+/// All materials with their coordinate sources; the default material follows if a primitive needs
+/// it.
 pub(super) fn read(
     document: &Document,
     data: &Buffers,
@@ -59,12 +60,12 @@ pub(super) fn name(material: &::gltf::Material) -> String {
         .map_or_else(|| format!("material {index}"), str::to_owned)
 }
 
-/// What base colour, metallic and roughness come from.
+/// Sources of base colour, metallic and roughness.
 struct Base<'a> {
     color: Option<texture::Info<'a>>,
-    /// Of roughness and metallic.
+    /// Texture of roughness and metallic.
     rough: Option<(texture::Info<'a>, Recipe)>,
-    /// With the factors.
+    /// The factors.
     material: Material,
 }
 
@@ -87,7 +88,7 @@ fn metallic_roughness<'a>(from: &::gltf::Material<'a>, images: &[Source]) -> Bas
     }
 }
 
-/// KHR_materials_pbrSpecularGlossiness: a dielectric whose reflectance is the specular colour, whatever it is.
+/// KHR_materials_pbrSpecularGlossiness as a dielectric with the specular colour as its reflectance.
 fn specular_glossiness<'a>(
     from: &::gltf::material::PbrSpecularGlossiness<'a>,
     name: &str,
@@ -98,7 +99,7 @@ fn specular_glossiness<'a>(
     let texture = from.specular_glossiness_texture();
     let specular =
         (finite3(from.specular_factor()) * means.color(texture.as_ref()).truncate()).min(Vec3::ONE);
-    // What is reflected specularly is not diffuse.
+    // Specular reflection is subtracted from the diffuse part.
     let diffuse =
         finite4(from.diffuse_factor()) * Vec3::splat(1.0 - specular.max_element()).extend(1.0);
     let gloss = from.glossiness_factor().clamp(0.0, 1.0);
@@ -148,7 +149,7 @@ fn convert(
     };
     let alpha_cutoff = match from.alpha_mode() {
         AlphaMode::Opaque => 0.0,
-        // All cutoffs above 1 are alike.
+        // Cutoffs above 1 are equivalent.
         AlphaMode::Mask => from.alpha_cutoff().unwrap_or(0.5).clamp(0.0, 2.0),
         AlphaMode::Blend => {
             match material.base_color.w {
@@ -240,7 +241,7 @@ fn source(info: &texture::Info, images: &[Source]) -> Source {
     images[info.texture().source().index()].clone()
 }
 
-/// A colour of numbers at or above 0.
+/// A finite, non-negative colour.
 pub(super) fn finite3(color: [f32; 3]) -> Vec3 {
     let color = Vec3::from_array(color);
     if color.is_finite() {

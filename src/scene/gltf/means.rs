@@ -1,4 +1,5 @@
-//! Textures of which materials keep the mean alone: a surface has one specular colour, and lets one share of light through.
+//! Textures that materials reduce to their mean: a material has one specular colour and one
+//! transmission.
 
 use std::collections::HashMap;
 
@@ -10,12 +11,12 @@ use crate::scene::progress::Progress;
 use crate::scene::texture::{Recipe, Requests, Source};
 use crate::scene::warnings::Warnings;
 
-/// Linear means, by image and whether it holds colours.
+/// Linear means by image and by whether it holds colours.
 #[derive(Debug, Default)]
 pub(super) struct Means(HashMap<(usize, bool), Vec4>);
 
 impl Means {
-    /// Decodes what the materials need; what cannot be decoded counts as white, and there is a warning.
+    /// Decodes the required images. Failures count as white and give a warning.
     pub fn load(
         document: &Document,
         images: &[Source],
@@ -47,7 +48,7 @@ impl Means {
         ))
     }
 
-    /// Of colours, alpha linear; white without a texture.
+    /// Mean of a colour texture with linear alpha; white without a texture.
     pub fn color(&self, info: Option<&texture::Info>) -> Vec4 {
         self.of(info, true)
     }
@@ -64,7 +65,7 @@ impl Means {
     }
 }
 
-/// Textures, and whether they hold colours.
+/// Required textures, and whether they hold colours.
 fn asked<'a>(material: &Material<'a>) -> Vec<(texture::Info<'a>, bool)> {
     let specular = material.specular();
     let colors = [

@@ -1,4 +1,4 @@
-//! Meshes: each primitive is read and repaired by itself, then becomes a submesh.
+//! Meshes: each primitive is read and repaired on its own, then becomes a submesh.
 
 use ::gltf::accessor::Dimensions;
 use ::gltf::mesh::{Mode, Primitive};
@@ -19,7 +19,7 @@ use crate::scene::{Material, Mesh, Submesh, Vertex};
 /// Vertices and indices that any file may have.
 pub(super) const MANY: usize = 1 << 24;
 
-/// One mesh per mesh of the file, in order; and what moves the vertices of those that can deform.
+/// The meshes of the file in order, and the rigs of those that deform.
 pub(super) fn read(
     document: &Document,
     buffers: &Buffers,
@@ -32,7 +32,7 @@ pub(super) fn read(
     let mut owners = Vec::new();
     let mut primitives = Vec::new();
     let mut meshes = Vec::new();
-    // Primitives may share their vertices; a small file must not fill the memory.
+    // Primitives may share vertices, so a small file could otherwise fill the memory.
     let mut room = MANY + buffers.len();
     for mesh in document.meshes() {
         let name = mesh
@@ -86,14 +86,14 @@ pub(super) fn read(
             ..Mesh::default()
         });
     }
-    // glTF 2.0, 3.7.2.1: without normals they are flat.
+    // glTF 2.0, 3.7.2.1: meshes without normals are flat-shaded.
     primitives
         .par_iter_mut()
         .filter(|raw| !raw.has_normals)
         .for_each(|raw| {
             match raw.sources.is_empty() {
                 true => flat(&mut raw.mesh),
-                // Triangles that lie in one plane now may not in another pose.
+                // Triangles that are coplanar in this pose may not be in another one.
                 false => {
                     unweld(raw);
                     flatten(&mut raw.mesh.vertices);
@@ -233,7 +233,7 @@ fn read_primitive(
     })
 }
 
-/// Texture coordinates of a set, with its transform; none if the primitive has no such set.
+/// Transformed texture coordinates of a set; `None` if the primitive lacks it.
 fn texture_coordinates(
     primitive: &Primitive,
     buffers: &Buffers,

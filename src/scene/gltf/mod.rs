@@ -34,7 +34,7 @@ pub(super) use lights::SCALE;
 
 /// Geometry, materials, textures, lights and cameras of a glTF file; no sky.
 ///
-/// `clip`: the name of the animation that comes before all others.
+/// `clip` names the animation that takes precedence over all others.
 pub(super) fn load(
     path: &Path,
     clip: Option<&str>,
@@ -99,7 +99,7 @@ pub(super) fn load(
     }
     attach(&mut scene, posings, &rigs, meshes::MANY + buffers.len()).map_err(fail)?;
     lights::warn_of_units(&document, &scene.lights, &mut warnings);
-    // Warnings so far know only parts of the file; each must name the file itself.
+    // Warnings so far name parts of the file; each must name the file itself.
     let name = path.display().to_string();
     scene.warnings = warnings.lines(&name);
     scene.warnings.extend(dropped.warning(&name));

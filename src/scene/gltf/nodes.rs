@@ -15,20 +15,20 @@ use crate::scene::motion::Rigs;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Camera, Instance, Mover, Scene};
 
-/// A node to visit, and the frame of its parent.
+/// A node to visit with its parent's frame.
 struct Visit<'a> {
     node: Node<'a>,
-    /// The frame that its parent moves with.
+    /// The moving frame of its parent.
     mover: Option<u32>,
-    /// Where its parent is in that.
+    /// Transform of its parent in that frame.
     above: Mat4,
     visible: bool,
 }
 
-/// Moving nodes in one another: each pose of an instance goes through all above it.
+/// Maximum depth of nested moving nodes; the cost of an instance's pose is proportional to it.
 const MAX_DEPTH: usize = 256;
 
-/// Where nodes are, by number: in which moving frame, and where there.
+/// Moving frame and transform of each node by number.
 pub(super) type Frames = HashMap<usize, (Option<u32>, Mat4)>;
 
 /// The content of the hierarchy, without meshes.
@@ -36,13 +36,13 @@ pub(super) type Frames = HashMap<usize, (Option<u32>, Mat4)>;
 pub(super) struct Placed<'a> {
     pub scene: Scene,
     pub frames: Frames,
-    /// How many moving nodes each mover is in, with itself.
+    /// Nesting depth of each mover, including itself.
     depths: Vec<usize>,
     /// Instances of nodes with a skin or morph targets.
     pub deforming: Vec<(usize, Node<'a>)>,
 }
 
-/// Instances, lights and cameras of the default scene (of the first, where none is the default).
+/// Instances, lights and cameras of the default scene, or of the first one.
 pub(super) fn place<'a>(
     document: &'a Document,
     buffers: &Buffers,
@@ -121,7 +121,7 @@ pub(super) fn place<'a>(
                 (document, buffers),
             )?;
         }
-        // Lights and cameras stand where they are at the start.
+        // Lights and cameras keep their transform at time 0.
         let moves = mover.is_some() && (node.light().is_some() || node.camera().is_some());
         if moves {
             warnings.add(
@@ -165,7 +165,7 @@ pub(super) fn place<'a>(
     Ok(placed)
 }
 
-/// The instances of a node's mesh in a moving frame or in the world.
+/// Instances of a node's mesh, in a moving frame or in the world.
 fn add_instances<'a>(
     placed: &mut Placed<'a>,
     node: &Node<'a>,
@@ -184,7 +184,7 @@ fn add_instances<'a>(
         return Err(format!("it has more than {MAX_INSTANCES} instances"));
     }
     let first = instances.len();
-    // glTF 2.0, 3.7.3.3: joints alone place what has a skin.
+    // glTF 2.0, 3.7.3.3: skinned meshes are placed by their joints alone.
     if node.skin().is_some() && rigs.contains_key(&mesh.index()) {
         (mover, transform) = (None, Mat4::IDENTITY);
     }

@@ -1,4 +1,4 @@
-//! Which texture coordinates a material reads, and how.
+//! The texture coordinates of materials.
 
 use ::gltf::json::extensions::texture::TextureTransform;
 use ::gltf::texture::{MagFilter, Sampler, WrappingMode};
@@ -8,7 +8,7 @@ use glam::{Affine2, Vec2};
 use crate::scene::coordinates::References;
 use crate::scene::{Lookup, Wrap};
 
-/// Texture coordinates: a set of the file, and a transform that is baked into the vertices.
+/// A coordinate set of the file and a transform that is baked into the vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct UvSource {
     pub set: u32,
@@ -38,7 +38,7 @@ impl UvSource {
         }
     }
 
-    /// Of a normal map, whose transform the crate does not read.
+    /// Source of a normal map; the crate does not read its transform.
     fn of_normal_map(material: &Material) -> Option<UvSource> {
         let map = material.normal_texture()?;
         let json = map.extension_value("KHR_texture_transform").cloned();
@@ -56,7 +56,7 @@ impl UvSource {
     }
 }
 
-/// KHR_texture_transform turns counter-clockwise in a frame whose v points down.
+/// KHR_texture_transform rotates counter-clockwise in a frame with v pointing down.
 fn placed(offset: [f32; 2], rotation: f32, scale: [f32; 2]) -> Affine2 {
     Affine2::from_scale_angle_translation(
         Vec2::from_array(scale),
@@ -65,14 +65,14 @@ fn placed(offset: [f32; 2], rotation: f32, scale: [f32; 2]) -> Affine2 {
     )
 }
 
-/// The sources that the vertices of a material have.
+/// The coordinate sources of a material's vertices.
 pub(super) type UvSources = crate::scene::coordinates::UvSources<UvSource>;
 
-/// Textures of a material: where each takes its coordinates from, and its sampler.
+/// Textures of a material with their coordinate sources and samplers.
 pub(super) type Placing = References<UvSource>;
 
 impl Placing {
-    /// Adds a texture and gives its number.
+    /// Adds a texture and returns its index.
     pub fn add_texture(&mut self, info: &texture::Info) -> usize {
         self.add(UvSource::of(info), lookup(&info.texture().sampler()))
     }

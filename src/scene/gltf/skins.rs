@@ -12,7 +12,8 @@ use crate::scene::motion::{Posing, Rig};
 use crate::scene::warnings::Warnings;
 use crate::scene::{Curve, Influence, Interpolation, Joint, Morph};
 
-/// The rig of a primitive with `count` vertices; none without joints and targets. Its size is taken off `room`.
+/// The rig of a primitive with `count` vertices; `None` without joints and targets. Its size is
+/// subtracted from `room`.
 pub(super) fn read(
     primitive: &Primitive,
     buffers: &Buffers,

@@ -1,4 +1,4 @@
-//! Extensions: the ones that a file may require, and messages about the others.
+//! Supported extensions, and messages about the others.
 
 use serde_json::Value;
 
@@ -23,21 +23,21 @@ const READ: [&str; 18] = [
     "KHR_node_visibility",
     "KHR_texture_basisu",
     "KHR_texture_transform",
-    // Authors and licences: nothing to see.
+    // Metadata without visual effect.
     "KHR_xmp_json_ld",
     "MSFT_texture_dds",
 ];
 
-/// Compressions that a file may use next to uncompressed data, which is read; and how to undo each.
+/// Optional compressions, whose uncompressed fallback is read, and the command that removes each.
 const COMPRESSED: [(&str, &str); 1] = [(
     "KHR_draco_mesh_compression",
     "Convert it with glTF Transform: npx @gltf-transform/cli copy IN.glb OUT.glb",
 )];
 
-/// Lines about extensions that are not read, for files with very many.
+/// Maximum number of lines about unsupported extensions.
 const LINES: usize = 20;
 
-/// Fails on a required extension that is not read, with a way on.
+/// Fails on a required, unsupported extension and suggests a remedy.
 pub(super) fn check_required(file: &Value) -> Result<(), String> {
     let missing: Vec<&str> = names(file, "extensionsRequired")
         .filter(|name| !READ.contains(name))
@@ -64,7 +64,7 @@ pub(super) fn check_required(file: &Value) -> Result<(), String> {
     }
 }
 
-/// Warns of used extensions that are not read. Material extensions are left to [`super::extensions`].
+/// Warns about used, unsupported extensions. [`super::extensions`] handles those of materials.
 pub(super) fn warn_of_used(file: &Value, warnings: &mut Warnings) {
     let quiet = |name: &&str| {
         READ.contains(name)

@@ -1,4 +1,4 @@
-//! Which parts of a mesh are closed, so that nobody outside sees the insides of their triangles.
+//! Detection of closed parts of a mesh, whose back faces are never visible from outside.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -10,15 +10,16 @@ use crate::scene::Mesh;
 /// A side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// From where its corners turn counter-clockwise.
+    /// The side from which its corners are counter-clockwise.
     Front,
-    /// From where they turn clockwise.
+    /// The side from which its corners are clockwise.
     Back,
 }
 
 impl Mesh {
-    /// For each triangle of the mesh, the side of it that is outside, if it is of a closed part whose diagonal is at most so long
-    /// (model space). Vertices in one place are one; neighbours may turn their corners either way.
+    /// For each triangle, its outer side if it belongs to a closed part with a diagonal of at most
+    /// `longest` (model space). Vertices at equal positions are merged; neighbours may have
+    /// opposite windings.
     pub fn outsides(&self, longest: f32) -> Vec<Option<Side>> {
         let triangles = self.indices.as_chunks::<3>().0;
         let neighbours = self.neighbours();
@@ -28,7 +29,7 @@ impl Mesh {
             if seen[start] {
                 continue;
             }
-            // A connected part, each triangle with whether it turns as the first does.
+            // A connected part; the flag tells whether a triangle has the winding of the first one.
             let mut part = vec![(start, true)];
             let mut turns: HashMap<usize, bool> = HashMap::from([(start, true)]);
             let (mut closed, mut at) = (true, 0);
@@ -78,7 +79,8 @@ impl Mesh {
         outsides
     }
 
-    /// Across each edge of each triangle: the one that shares it, if exactly one does, and whether both turn their corners alike.
+    /// For each edge of each triangle: the neighbour, if exactly one triangle shares the edge, and
+    /// whether both have the same winding.
     fn neighbours(&self) -> Vec<[Option<(usize, bool)>; 3]> {
         let mut places: HashMap<[u32; 3], usize> = HashMap::new();
         let welded: Vec<usize> = self
@@ -96,7 +98,7 @@ impl Mesh {
             [(a, b), (b, c), (c, a)]
         };
         let triangles = self.indices.as_chunks::<3>().0;
-        // By edge: who has it, and whether from the lesser end.
+        // By edge: its triangles, and whether each runs from the smaller index.
         let mut edges: HashMap<(usize, usize), Vec<(usize, bool)>> = HashMap::new();
         for (number, triangle) in triangles.iter().enumerate() {
             for (from, to) in edges_of(triangle) {

@@ -1,4 +1,4 @@
-//! From triangles as a file gives them to meshes that can be relied on: finite, with area, normals and tangents.
+//! From raw triangles of a file to valid meshes: finite, non-degenerate, with normals and tangents.
 
 mod closed;
 mod normals;
@@ -15,17 +15,18 @@ pub(super) use normals::{corner_angles, flat, flatten, is_creased, point_key};
 use super::progress::Progress;
 use super::{Material, Mesh, Vertex};
 
-/// A mesh as read, before repair.
+/// A mesh before repair.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RawMesh {
     pub mesh: Mesh,
-    /// Of a mesh that deforms: what each vertex was read as. Vertices of different sources stay apart.
+    /// For a deforming mesh, the source index of each vertex. Vertices with different sources are
+    /// not merged.
     pub sources: Vec<u32>,
     pub has_normals: bool,
     pub has_tangents: bool,
 }
 
-/// Triangles that [`prepare_all`] took out.
+/// Triangles removed by [`prepare_all`].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Dropped {
     pub not_finite: usize,
@@ -33,7 +34,7 @@ pub(super) struct Dropped {
 }
 
 impl Dropped {
-    /// One sentence for the scene's warnings, or none when nothing was dropped.
+    /// The warning about dropped triangles, if there are any.
     pub fn warning(&self, file: &str) -> Option<String> {
         if self.not_finite + self.no_area == 0 {
             return None;
@@ -50,7 +51,7 @@ impl Dropped {
     }
 }
 
-/// Repairs meshes in parallel. Fails on an index outside of its mesh.
+/// Repairs meshes in parallel. Fails on an index out of range.
 pub(super) fn prepare_all(
     raw: Vec<RawMesh>,
     materials: &[Material],
@@ -63,10 +64,10 @@ pub(super) fn prepare_all(
     ))
 }
 
-/// A mesh, and the sources of its vertices if it deforms.
+/// A mesh, and the source index of each vertex if it deforms.
 pub(super) type Rigged = (Mesh, Vec<u32>);
 
-/// [`prepare_all`], with the sources of vertices.
+/// [`prepare_all`] with the source indices of vertices.
 pub(super) fn prepare_rigged(
     raw: Vec<RawMesh>,
     materials: &[Material],
@@ -98,7 +99,7 @@ fn prepare(raw: RawMesh, materials: &[Material]) -> Result<(Mesh, Vec<u32>, Drop
         has_tangents,
     } = raw;
     check_indices(&mesh, materials.len())?;
-    // A triangle without area may have one in another pose.
+    // A degenerate triangle may have area in another pose.
     let deforms = !sources.is_empty();
     let dropped = drop_bad_triangles(&mut mesh, deforms);
     drop_unused_vertices(&mut mesh, &mut sources);
@@ -145,13 +146,13 @@ fn check_indices(mesh: &Mesh, materials: usize) -> Result<(), String> {
     Ok(())
 }
 
-/// Takes out what a pose has left without a place or an area.
+/// Removes triangles that are degenerate or not finite in this pose.
 pub(super) fn drop_flat(mesh: &mut Mesh) {
     drop_bad_triangles(mesh, false);
     drop_unused_vertices(mesh, &mut Vec::new());
 }
 
-/// Rewrites indices and submeshes without the triangles that have no place or no area.
+/// Rewrites indices and submeshes without degenerate and non-finite triangles.
 fn drop_bad_triangles(mesh: &mut Mesh, keep_flat: bool) -> Dropped {
     let mut dropped = Dropped::default();
     let mut kept = Vec::with_capacity(mesh.indices.len());
@@ -178,7 +179,8 @@ fn drop_bad_triangles(mesh: &mut Mesh, keep_flat: bool) -> Dropped {
     dropped
 }
 
-/// False for points and lines: the height is below 1e-9 of the longest edge (f64, so thin needles survive).
+/// Whether the height exceeds 1e-9 of the longest edge (f64, so thin needles survive); false for
+/// points and lines.
 fn has_area(corner: [DVec3; 3]) -> bool {
     let (ab, ac, bc) = (
         corner[1] - corner[0],
@@ -192,7 +194,7 @@ fn has_area(corner: [DVec3; 3]) -> bool {
     ab.cross(ac).length() > 1e-9 * longest
 }
 
-/// Removes vertices that no triangle uses, so that bounds and uploads hold only what is seen.
+/// Removes unreferenced vertices, so that bounds and uploads cover only visible geometry.
 fn drop_unused_vertices(mesh: &mut Mesh, sources: &mut Vec<u32>) {
     let mut used = vec![false; mesh.vertices.len()];
     for &i in &mesh.indices {
@@ -235,13 +237,14 @@ fn clear_bad_attributes(mesh: &mut Mesh) {
     }
 }
 
-/// Shared vertices from one vertex per corner; equal means equal bits.
+/// Merges corners with identical bits into shared vertices.
 pub(super) fn weld(corners: &[Vertex]) -> (Vec<Vertex>, Vec<u32>) {
     let (vertices, indices, _) = weld_sources(corners, &[]);
     (vertices, indices)
 }
 
-/// [`weld`] of corners with sources, which must be equal too; an empty list is one source. With the sources of vertices.
+/// [`weld`] that also compares source indices (an empty list: all equal) and returns those of the
+/// vertices.
 pub(super) fn weld_sources(
     corners: &[Vertex],
     sources: &[u32],
@@ -262,14 +265,14 @@ pub(super) fn weld_sources(
     (vertices, indices, kept)
 }
 
-/// A vertex of its own for each corner.
+/// Gives each corner its own vertex.
 pub(super) fn unweld(raw: &mut RawMesh) {
     let RawMesh { mesh, sources, .. } = raw;
     let corners = mesh
         .indices
         .iter()
         .map(|&i| mesh.vertices.get(i as usize).copied());
-    // A mesh with indices outside of it is left to `prepare_all`.
+    // `prepare_all` reports indices out of range.
     let Some(corners) = corners.collect::<Option<Vec<Vertex>>>() else {
         return;
     };
@@ -282,7 +285,7 @@ pub(super) fn unweld(raw: &mut RawMesh) {
     mesh.vertices = corners;
 }
 
-/// Unit normal of a triangle with area, by its winding.
+/// Unit normal of a non-degenerate triangle, from its winding.
 pub(super) fn face_normal(corner: [[f32; 3]; 3]) -> Vec3 {
     let [a, b, c] = corner.map(|p| DVec3::from_array(p.map(f64::from)));
     (b - a).cross(c - a).normalize_or(DVec3::Y).as_vec3()

@@ -1,4 +1,4 @@
-//! Normals for meshes that have none, and repair of unusable ones.
+//! Generation of missing normals and repair of invalid ones.
 
 use std::collections::HashMap;
 
@@ -7,12 +7,13 @@ use glam::Vec3;
 use super::{face_normal, weld};
 use crate::scene::{Mesh, Vertex};
 
-/// Faces that meet at more than this stay creased.
+/// Cosine of the crease angle: faces that meet at a larger angle stay sharp.
 const CREASE_COSINE: f32 = 0.5;
-/// A point shared by more corners than this gets flat normals: smoothing is quadratic in it.
+/// Points with more corners get flat normals, because smoothing takes quadratic time in the
+/// valence.
 const MAX_VALENCE: usize = 256;
 
-/// Makes given normals unit length; replaces those of no length by the normal of a face they are on.
+/// Normalises normals; zero normals are replaced by a face normal.
 pub(super) fn repair(mesh: &mut Mesh) {
     let mut missing = false;
     for vertex in &mut mesh.vertices {
@@ -34,7 +35,7 @@ pub(super) fn repair(mesh: &mut Mesh) {
     }
 }
 
-/// Gives every corner the normal of its face. Leaves a mesh with indices outside of it to [`super::prepare_all`].
+/// Gives every corner its face normal. [`super::prepare_all`] reports indices out of range.
 pub(in crate::scene) fn flat(mesh: &mut Mesh) {
     let corners = mesh
         .indices
@@ -47,7 +48,7 @@ pub(in crate::scene) fn flat(mesh: &mut Mesh) {
     (mesh.vertices, mesh.indices) = weld(&corners);
 }
 
-/// Gives three corners each the normal of their face.
+/// Gives three corners each their face normal.
 pub(in crate::scene) fn flatten(corners: &mut [Vertex]) {
     for triangle in corners.as_chunks_mut::<3>().0 {
         let normal = face_normal(triangle.map(|v| v.position)).to_array();
@@ -101,17 +102,17 @@ pub(super) fn generate(mesh: &mut Mesh) {
     (mesh.vertices, mesh.indices) = weld(&corners);
 }
 
-/// Whether an edge between two faces stays sharp, by their normals.
+/// Whether the edge between two faces is sharp, from their normals.
 pub(in crate::scene) fn is_creased(one: Vec3, other: Vec3) -> bool {
     one.dot(other) < CREASE_COSINE
 }
 
-/// Equal points have equal keys; adding zero folds -0 into +0.
+/// Equal positions have equal keys; adding zero folds -0 into +0.
 pub(in crate::scene) fn point_key(position: [f32; 3]) -> [u32; 3] {
     position.map(|c| (c + 0.0).to_bits())
 }
 
-/// Radians.
+/// Corner angles of a triangle [radians].
 pub(in crate::scene) fn corner_angles(triangle: &[Vertex; 3]) -> [f32; 3] {
     let p = triangle.map(|v| Vec3::from_array(v.position));
     let angle = |i: usize| {

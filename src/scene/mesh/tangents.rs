@@ -1,4 +1,4 @@
-//! Tangents: MikkTSpace where a normal map needs them, otherwise any that is orthogonal to the normal.
+//! Tangents: MikkTSpace for normal maps, otherwise any vector orthogonal to the normal.
 
 use super::weld_sources;
 use crate::scene::{Mesh, Vertex};
@@ -7,8 +7,8 @@ use glam::Vec3;
 
 /// MikkTSpace tangents; vertices whose corners disagree are split.
 ///
-/// MikkTSpace's bitangent points along increasing v, which is down in the picture (glTF 2.0, 3.8.3). Normal maps have
-/// +y up (glTF 2.0, `material.normalTexture`), so the sign is negated.
+/// MikkTSpace's bitangent points along increasing v, which is down in the picture (glTF 2.0,
+/// 3.8.3). Normal maps have +y up (glTF 2.0, `material.normalTexture`), so the sign is negated.
 pub(super) fn generate(mesh: &mut Mesh, sources: &mut Vec<u32>, second_set: bool) {
     let corners = mesh
         .indices
@@ -30,7 +30,7 @@ pub(super) fn generate(mesh: &mut Mesh, sources: &mut Vec<u32>, second_set: bool
     repair(mesh);
 }
 
-/// Makes given tangents unit length and signed; replaces those of no length.
+/// Normalises tangents and their sign; replaces zero tangents.
 pub(super) fn repair(mesh: &mut Mesh) {
     for vertex in &mut mesh.vertices {
         let [x, y, z, w] = vertex.tangent;
@@ -43,7 +43,7 @@ pub(super) fn repair(mesh: &mut Mesh) {
     }
 }
 
-/// Any orthonormal tangent.
+/// Arbitrary orthonormal tangents.
 pub(super) fn any(mesh: &mut Mesh) {
     for vertex in &mut mesh.vertices {
         vertex.tangent = any_tangent(vertex.normal);
@@ -59,7 +59,7 @@ fn any_tangent(normal: [f32; 3]) -> [f32; 4] {
 
 struct Soup {
     corners: Vec<Vertex>,
-    /// Whether the normal map takes the second set of texture coordinates.
+    /// Whether the normal map uses the second set of texture coordinates.
     second_set: bool,
 }
 
@@ -85,7 +85,7 @@ impl Geometry for Soup {
         }
     }
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, vertex: usize) {
-        // Where a triangle without area has no neighbour to take it from there is none: `repair` makes one.
+        // A degenerate triangle without neighbours gets no tangent; `repair` makes one.
         self.corners[face * 3 + vertex].tangent = space.map_or([0.0; 4], |space| {
             let [x, y, z, w] = space.tangent_encoded();
             [x, y, z, -w]

@@ -1,4 +1,4 @@
-//! The space that moving meshes take.
+//! Bounds of moving meshes.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -7,15 +7,16 @@ use glam::{Mat4, Vec3};
 use super::{Deformer, Mover, Track, sorted};
 use crate::scene::{Instance, Mesh, Scene};
 
-/// Poses looked at between two keys.
+/// Poses sampled between two keys.
 const POSES_PER_INTERVAL: usize = 16;
-/// Poses looked at in all.
+/// Poses sampled per instance.
 const MAX_POSES: usize = 4096;
-/// Poses of all instances together.
+/// Poses sampled for all instances together.
 const ALL_POSES: usize = 1 << 20;
-/// Above this many points times poses, the corners of their box are moved instead (larger, never smaller).
+/// Above this number of points times poses, the corners of the bounding box are transformed instead
+/// (conservative).
 const EXACT_WORK: usize = 20_000_000;
-/// Part of its size that is added to the box around a mesh that deforms: between the poses looked at it may be larger.
+/// Relative margin around a deforming mesh, which may be larger between the sampled poses.
 const MARGIN: f32 = 0.01;
 
 /// Lower and upper corner.
@@ -24,7 +25,7 @@ type Box3 = (Vec3, Vec3);
 const NOTHING: Box3 = (Vec3::INFINITY, Vec3::NEG_INFINITY);
 
 impl Scene {
-    /// The box around everything in the world, over all poses; (0, 0) for a scene without triangles.
+    /// World bounds over all poses; (0, 0) for a scene without triangles.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let deformers: HashMap<u32, &Deformer> =
             self.deformers.iter().map(|d| (d.mesh, d)).collect();
@@ -48,7 +49,8 @@ impl Scene {
         };
         let mut points = Points::of(mesh, deformer);
         let mut local = instance.transform;
-        // Movers of one period are sampled together. Movers of another period above them move the box of the result.
+        // Movers with the same period are sampled together. Movers above with another period
+        // transform the resulting box.
         for moves in self.chain(instance.mover) {
             let tracks: Vec<&Track> = moves.iter().map(|m| &*m.track).collect();
             let times = sample_times(&tracks, most);
@@ -63,7 +65,7 @@ impl Scene {
         points.moved([local].into_iter())
     }
 
-    /// The joints' movers and those above them, each once.
+    /// The movers of the joints and their ancestors, each once.
     fn above(&self, deformer: &Deformer) -> BTreeSet<u32> {
         let mut found = BTreeSet::new();
         for joint in &deformer.joints {
@@ -76,7 +78,7 @@ impl Scene {
         found
     }
 
-    /// The movers above something, in runs of the same period, innermost first.
+    /// The ancestors of a mover in runs of equal periods, innermost first.
     fn chain(&self, innermost: Option<u32>) -> Vec<Vec<&Mover>> {
         let mut runs: Vec<Vec<&Mover>> = Vec::new();
         let mut next = innermost;
@@ -94,7 +96,7 @@ impl Scene {
         runs
     }
 
-    /// The box around a mesh in all poses that a deformer gives it, in its own space.
+    /// Model-space bounds of a mesh over all poses of its deformer.
     pub(in crate::scene) fn deformed_bounds(&self, deformer: &Deformer) -> (Vec3, Vec3) {
         let Some(mesh) = self.meshes.get(deformer.mesh as usize) else {
             return (Vec3::ZERO, Vec3::ZERO);
@@ -110,7 +112,7 @@ impl Scene {
             .flat_map(|curve| curve.times().iter().copied());
         let times = sorted(tracks.flat_map(Track::times).chain(weights).collect());
         let mut times = between(&times, MAX_POSES);
-        // As many as the work allows, evenly.
+        // As many poses as the work limit allows, evenly spaced.
         let most =
             (EXACT_WORK / (mesh.vertices.len() + self.movers.len()).max(1)).clamp(16, MAX_POSES);
         let step = times.len().div_ceil(most).max(1);
@@ -131,7 +133,7 @@ impl Scene {
     }
 }
 
-/// Points inside of a box.
+/// Points to bound.
 enum Points<'a> {
     Mesh(&'a Mesh),
     Box(Box3),
@@ -184,7 +186,7 @@ fn sample_times(tracks: &[&Track], most: usize) -> Vec<f32> {
     )
 }
 
-/// Times of keys and some between them; those of very many are looked at in part.
+/// Key times and times between them; many keys are subsampled.
 fn between(keys: &[f32], most: usize) -> Vec<f32> {
     let Some(last) = keys.last() else {
         return vec![0.0];
@@ -195,7 +197,8 @@ fn between(keys: &[f32], most: usize) -> Vec<f32> {
     let pairs = keys.windows(2).step_by(step);
     let inner =
         pairs.flat_map(|k| (0..each).map(move |i| k[0] + (k[1] - k[0]) * i as f32 / each as f32));
-    // At the end of a period a track is at its beginning again, so the last key is sampled just before it.
+    // At the end of a period the track wraps to its start, so the last key is sampled just before
+    // it.
     inner
         .chain([last.next_down().max(keys[0]), *last])
         .collect()

@@ -1,29 +1,30 @@
-//! Values over time, as animations of glTF have them (glTF 2.0, Appendix C).
+//! Animation curves as in glTF 2.0, Appendix C.
 
 use glam::{Quat, Vec3, Vec4};
 
-/// Values between two keys.
+/// Interpolation between two keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
-    /// The value of the key before.
+    /// The value of the previous key.
     Step,
-    /// A straight line; for rotations the shorter arc.
+    /// Linear; for rotations along the shorter arc.
     Linear,
-    /// A cubic Hermite spline. A key has three values: its in-tangent, itself and its out-tangent, tangents per second.
+    /// Cubic Hermite spline. Each key has an in-tangent, a value and an out-tangent; tangents are
+    /// per second.
     Cubic,
 }
 
-/// Values that are interpolated.
+/// Values that can be interpolated.
 pub trait Value: Copy {
-    /// The part `s` of the way from one to another.
+    /// Interpolates from `self` to `other` at `s` in 0..1.
     fn between(self, other: Self, s: f32) -> Self;
-    /// A sum of four, by weights.
+    /// Weighted sum.
     fn sum(values: [Self; 4], weights: [f32; 4]) -> Self;
-    /// Whether all of its numbers are finite.
+    /// Whether all components are finite.
     fn is_finite(self) -> bool;
 }
 
-/// A value at every time: before the first key and after the last one theirs.
+/// A value over time; constant before the first and after the last key.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve<T> {
     times: Vec<f32>,
@@ -32,8 +33,8 @@ pub struct Curve<T> {
 }
 
 impl<T: Value> Curve<T> {
-    /// None where there is no key, a time or value is not finite, times do not rise, or there is not a value (three of cubic
-    /// curves) for each time.
+    /// `None` if there is no key, a time or value is not finite, times do not increase, or the
+    /// number of values does not match (one per time, three for cubic curves).
     pub fn new(times: Vec<f32>, values: Vec<T>, interpolation: Interpolation) -> Option<Curve<T>> {
         let each = if interpolation == Interpolation::Cubic {
             3
@@ -49,7 +50,7 @@ impl<T: Value> Curve<T> {
         })
     }
 
-    /// Its values times a factor, if they stay finite.
+    /// The curve times a factor, if its values stay finite.
     pub(in crate::scene) fn scaled(&self, factor: f32) -> Option<Curve<T>>
     where
         T: std::ops::Mul<f32, Output = T>,
@@ -58,12 +59,12 @@ impl<T: Value> Curve<T> {
         Curve::new(self.times.clone(), values, self.interpolation)
     }
 
-    /// Seconds, in order.
+    /// Times of the keys [s], increasing.
     pub fn times(&self) -> &[f32] {
         &self.times
     }
 
-    /// One a key, or three.
+    /// One value per key, or three for cubic curves.
     pub fn values(&self) -> &[T] {
         &self.values
     }

@@ -1,4 +1,4 @@
-//! Vertices that move by morph targets, then by skins (glTF 2.0, 3.7.2.2 and 3.7.3).
+//! Vertex deformation by morph targets, then by skins (glTF 2.0, 3.7.2.2 and 3.7.3).
 
 use std::ops::Range;
 
@@ -11,72 +11,73 @@ use crate::scene::mesh::face_normal;
 use crate::scene::split::halfway;
 use crate::scene::{Mesh, Scene, Vertex};
 
-/// How the vertices of a mesh move. Meshes in [`Scene::meshes`] are posed at 0 s.
+/// Deformation of a mesh. Meshes in [`Scene::meshes`] are stored in the pose at 0 s.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Deformer {
-    /// A number in [`Scene::meshes`].
+    /// Index into [`Scene::meshes`].
     pub mesh: u32,
-    /// Position, normal and tangent of its first vertices before all that moves them.
+    /// Undeformed position, normal and tangent of the first vertices.
     pub rest: Vec<Vertex>,
-    /// Shapes that are added.
+    /// Morph targets.
     pub(crate) morphs: Vec<Morph>,
     /// The weight of each morph over time.
     pub weights: Vec<Curve<f32>>,
-    /// Seconds after which weights start over.
+    /// Period of the weights [s].
     pub period: Option<f32>,
-    /// The joints of the skin; none: there is no skin.
+    /// The joints of the skin; empty without a skin.
     pub joints: Vec<Joint>,
-    /// The influences of all vertices, in the order of vertices.
+    /// The influences of all vertices, in vertex order.
     pub(crate) influences: Vec<Influence>,
-    /// The influences of each vertex, as a range of the list.
+    /// The influences of each vertex, as a range of `influences`.
     pub(crate) influenced: Vec<Range<u32>>,
-    /// Whether each vertex has the normal of its triangle in every pose. Empty: none.
+    /// Whether each vertex uses its triangle's normal in every pose. Empty: none does.
     pub flat: Vec<bool>,
-    /// The ends of the split edge for each vertex after those of `rest`; both come before the vertex.
+    /// For each vertex after those of `rest`, the ends of the edge that it halves; both come
+    /// earlier.
     pub halves: Vec<[u32; 2]>,
-    /// The box around all of its poses.
+    /// Bounds over all poses.
     pub bounds: (Vec3, Vec3),
 }
 
-/// Differences from the shape at rest, by vertex; an empty list is none.
+/// Per-vertex offsets of a morph target; empty lists are zero.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Morph {
-    /// m.
+    /// Offsets of positions [m].
     pub positions: Vec<Vec3>,
-    /// Added before normals get unit length.
+    /// Offsets of normals, added before normalisation.
     pub normals: Vec<Vec3>,
-    /// Likewise.
+    /// Offsets of tangents, added before normalisation.
     pub tangents: Vec<Vec3>,
 }
 
-/// A frame that moves vertices.
+/// A joint of a skin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {
-    /// The frame that it moves with.
+    /// The mover that it follows.
     pub mover: Option<u32>,
-    /// Where it is in that frame.
+    /// Its transform in that mover's frame.
     pub transform: Mat4,
-    /// From the mesh at rest into the joint.
+    /// From the undeformed mesh to the joint.
     pub inverse_bind: Mat4,
 }
 
-/// A joint's part in a vertex.
+/// A joint's influence on a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Influence {
-    /// A number in [`Deformer::joints`].
+    /// Index into [`Deformer::joints`].
     pub joint: u32,
-    /// All of a vertex add up to 1.
+    /// The weights of a vertex sum to 1.
     pub weight: f32,
 }
 
-/// Weights and joints at a time.
+/// Morph weights and joint matrices at a time.
 struct Pose {
     weights: Vec<f32>,
     joints: Vec<Mat4>,
 }
 
 impl Scene {
-    /// All meshes as they are at a time in seconds: those that deform are posed.
+    /// The vertices of all meshes at a time in seconds, with deformations applied.
     pub fn posed_meshes(&self, time: f32) -> Vec<std::borrow::Cow<'_, [Vertex]>> {
         let mut meshes: Vec<_> = self
             .meshes
@@ -98,7 +99,7 @@ impl Scene {
 }
 
 impl Deformer {
-    /// The vertices of its mesh at a time in seconds.
+    /// The deformed vertices of its mesh at a time in seconds.
     pub(in crate::scene) fn posed(&self, mesh: &Mesh, frames: &[Mat4], time: f32) -> Vec<Vertex> {
         let mut vertices = mesh.vertices.clone();
         let pose = self.pose(frames, time);
@@ -135,7 +136,7 @@ impl Deformer {
 
     fn is_flat(&self, vertex: u32) -> bool {
         let mut vertex = vertex as usize;
-        // A half comes after its two ends.
+        // A halved vertex comes after its two ends.
         while let Some([first, _]) = vertex
             .checked_sub(self.rest.len())
             .and_then(|half| self.halves.get(half))
@@ -204,7 +205,8 @@ impl Deformer {
     }
 }
 
-/// Turns normals as a matrix turns their surface: its inverse transposed, up to a positive factor, also where it is singular.
+/// The cofactor matrix, which transforms normals: the inverse transpose up to a positive factor,
+/// defined for singular matrices too.
 fn cofactors(m: &Mat3) -> Mat3 {
     let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
     let all = Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y));

@@ -1,4 +1,4 @@
-//! Motion: frames, each in the frame of its parent, and meshes with vertices that follow frames.
+//! Motion: a hierarchy of moving frames, and meshes that they deform.
 
 mod bounds;
 mod curve;
@@ -18,40 +18,40 @@ pub(in crate::scene) use rig::{Posing, Rig, Rigs, attach};
 
 use super::{Instance, Scene};
 
-/// A frame that moves.
+/// A moving frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mover {
-    /// A lower number in [`Scene::movers`]: the frame that this one moves in; the world where absent.
+    /// Index of its parent in [`Scene::movers`], lower than its own; `None` for the world.
     pub parent: Option<u32>,
-    /// Where it is in that, before it moves.
+    /// Static transform in the parent's frame, before the motion.
     pub placed: Mat4,
-    /// How it moves.
+    /// Motion in that frame.
     pub track: Arc<Track>,
 }
 
-/// Motion in a frame: scale, then rotation, then translation.
+/// Animated scale, then rotation, then translation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Track {
-    /// m.
+    /// Translation [m].
     pub translation: Option<Curve<Vec3>>,
-    /// Unit quaternions.
+    /// Rotation as unit quaternions.
     pub rotation: Option<Curve<Quat>>,
-    /// Along the axes before the rotation.
+    /// Scale, before the rotation.
     pub scale: Option<Curve<Vec3>>,
-    /// In place of curves that are absent.
+    /// Values of absent curves.
     pub rest: Rest,
-    /// Seconds after which it starts over; where absent, it stays at its last key.
+    /// Period [s]; `None` holds the last key.
     pub period: Option<f32>,
 }
 
-/// The pose of a frame that does not move.
+/// A static pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
-    /// m.
+    /// Translation [m].
     pub translation: Vec3,
-    /// Unit length.
+    /// Rotation, unit length.
     pub rotation: Quat,
-    /// Along the axes before the rotation.
+    /// Scale, before the rotation.
     pub scale: Vec3,
 }
 
@@ -68,16 +68,16 @@ impl Default for Rest {
 /// A rigid pose at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keyframe {
-    /// Seconds.
+    /// Time [s].
     pub time: f32,
-    /// m.
+    /// Translation [m].
     pub translation: Vec3,
-    /// Around the origin, before the translation.
+    /// Rotation about the origin, before the translation.
     pub rotation: Quat,
 }
 
 impl Track {
-    /// The motion of a rigid body; `repeat`: it starts over after the last keyframe. Keyframes that are no curve do not move.
+    /// Rigid motion; `repeat` loops after the last keyframe. Invalid keyframes give no motion.
     pub fn rigid(keys: &[Keyframe], repeat: bool) -> Track {
         let times: Vec<f32> = keys.iter().map(|k| k.time).collect();
         let last = times.last().copied().filter(|last| repeat && *last > 0.0);
@@ -94,7 +94,7 @@ impl Track {
         }
     }
 
-    /// Times of keys, each once, in order.
+    /// Times of all keys, sorted, without duplicates.
     pub fn times(&self) -> Vec<f32> {
         let translation = self.translation.iter().flat_map(Curve::times);
         let rotation = self.rotation.iter().flat_map(Curve::times);
@@ -102,7 +102,7 @@ impl Track {
         sorted(translation.chain(rotation).chain(scale).copied().collect())
     }
 
-    /// Its frame at a time in seconds.
+    /// Its transform at a time in seconds.
     pub fn at(&self, time: f32) -> Mat4 {
         let time = wrapped(time, self.period);
         let scale = self.scale.as_ref().map_or(self.rest.scale, |c| c.at(time));
@@ -118,7 +118,7 @@ impl Track {
     }
 }
 
-/// A time within a period.
+/// A time reduced to the period.
 fn wrapped(time: f32, period: Option<f32>) -> f32 {
     period
         .filter(|p| *p > 0.0 && time.is_finite())
@@ -136,7 +136,7 @@ impl Scene {
         !self.deformers.is_empty() || self.instances.iter().any(|i| i.mover.is_some())
     }
 
-    /// Instances that move or change their shape.
+    /// Instances that move or deform.
     pub fn animated(&self) -> impl Iterator<Item = &Instance> {
         let deforming: HashSet<u32> = self.deformers.iter().map(|d| d.mesh).collect();
         self.instances
@@ -144,7 +144,7 @@ impl Scene {
             .filter(move |i| i.mover.is_some() || deforming.contains(&i.mesh))
     }
 
-    /// All movers' frames in the world at a time in seconds.
+    /// World transforms of all movers at a time in seconds.
     pub fn mover_frames(&self, time: f32) -> Vec<Mat4> {
         let mut frames: Vec<Mat4> = Vec::with_capacity(self.movers.len());
         for mover in &self.movers {
@@ -158,7 +158,7 @@ impl Scene {
         frames
     }
 
-    /// Model to world at a time in seconds; nothing moves an instance that is not there.
+    /// Model to world at a time in seconds; the identity for an unknown instance.
     pub fn instance_transform(&self, instance: usize, time: f32) -> Mat4 {
         let Some(instance) = self.instances.get(instance) else {
             return Mat4::IDENTITY;
@@ -178,7 +178,7 @@ impl Scene {
     }
 }
 
-/// A transform in the frame of a mover as a transform in the world; without a mover it is in the world already.
+/// World transform of `local` in a mover's frame; `local` itself without a mover.
 pub(crate) fn in_world(frames: &[Mat4], mover: Option<u32>, local: Mat4) -> Mat4 {
     mover
         .and_then(|m| frames.get(m as usize))

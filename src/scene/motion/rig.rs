@@ -1,4 +1,4 @@
-//! Joints and morph targets by vertex while a file is read, and the deformers that come of them.
+//! Per-vertex joints and morph targets during loading, and the deformers made of them.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -9,33 +9,33 @@ use super::{Curve, Deformer, Influence, Joint, Morph};
 use crate::scene::mesh::drop_flat;
 use crate::scene::{Mesh, Scene};
 
-/// Joints and morph targets of the vertices of a mesh or of a part.
+/// Joints and morph targets of a mesh or primitive.
 #[derive(Clone, Debug, Default)]
 pub(in crate::scene) struct Rig {
     pub influences: Vec<Influence>,
     pub influenced: Vec<Range<u32>>,
     pub morphs: Vec<Morph>,
-    /// Whether a vertex has the normal of its triangle.
+    /// Whether a vertex uses its triangle's normal.
     pub flat: Vec<bool>,
 }
 
-/// The rigs of meshes that deform, by the number of the mesh.
+/// Rigs of deforming meshes by mesh index.
 pub(in crate::scene) type Rigs = HashMap<usize, Rig>;
 
-/// The pose of an instance's mesh over time.
+/// Animated joints and weights of an instance's mesh.
 pub(in crate::scene) struct Posing {
-    /// A number in [`Scene::instances`].
+    /// Index into [`Scene::instances`].
     pub instance: usize,
-    /// None: there is no skin.
+    /// The joints; empty without a skin.
     pub joints: Vec<Joint>,
-    /// One for each morph.
+    /// One curve per morph.
     pub weights: Vec<Curve<f32>>,
-    /// Seconds after which weights start over.
+    /// Period of the weights [s].
     pub period: Option<f32>,
 }
 
 impl Rig {
-    /// Adds a vertex that these move; the format asks for weights that add up to 1.
+    /// Adds a vertex with its influences; weights are normalised, as the format requires.
     pub fn push(&mut self, influences: &[Influence]) {
         let sum: f32 = influences.iter().map(|i| i.weight).sum();
         let start = self.influences.len() as u32;
@@ -53,9 +53,9 @@ impl Rig {
             .unwrap_or_default()
     }
 
-    /// Adds the vertices of a primitive, each of a source in its rig, behind `before` others.
+    /// Appends the vertices of a primitive by their sources in its rig, after `before` others.
     pub fn append(&mut self, before: usize, primitive: Option<&Rig>, sources: &[u32], flat: bool) {
-        // The vertices before may have no rig.
+        // Earlier vertices may have no rig.
         self.influenced.resize(before, 0..0);
         self.flat.resize(before, false);
         self.flat.resize(before + sources.len(), flat);
@@ -85,15 +85,15 @@ impl Rig {
     }
 }
 
-/// Poses the meshes of instances, and makes deformers of those that move. The scene has its meshes, which `rigs` are of.
-/// Copies of meshes take no more than `room` vertices and indices.
+/// Poses the meshes of instances and creates deformers for those that move. `rigs` is indexed by
+/// the scene's meshes. Copies of meshes use at most `room` vertices and indices.
 pub(in crate::scene) fn attach(
     scene: &mut Scene,
     posings: Vec<Posing>,
     rigs: &Rigs,
     mut room: usize,
 ) -> Result<(), String> {
-    // Each mesh is itself for the first that poses it, unless something else shows it too.
+    // The first posing of a mesh reuses it, unless another instance shows it too.
     let posing: HashSet<usize> = posings.iter().map(|p| p.instance).collect();
     let shown = scene
         .instances
@@ -119,7 +119,7 @@ pub(in crate::scene) fn attach(
         } else {
             scene.meshes.len() as u32
         };
-        // The mesh in its place may have been posed.
+        // The mesh may already be posed.
         let rest = read
             .entry(mesh)
             .or_insert_with(|| scene.meshes[mesh as usize].clone());

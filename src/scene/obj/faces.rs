@@ -1,9 +1,9 @@
-//! Corners of faces: which position, texture coordinates and normal each names.
+//! Corners of faces: indices of position, texture coordinates and normal.
 
-/// An attribute that a corner does not name.
+/// Marks an absent attribute.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// A corner, by numbers from 0.
+/// A corner, by indices from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Corner {
     pub position: u32,
@@ -11,7 +11,7 @@ pub(super) struct Corner {
     pub normal: u32,
 }
 
-/// Counts of the attributes above the line. Negative numbers count back from them.
+/// Counts of the attributes so far; negative numbers count back from them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Counts {
     pub positions: usize,
@@ -19,11 +19,11 @@ pub(super) struct Counts {
     pub normals: usize,
 }
 
-/// A corner, and which of its texture coordinates and normal cannot exist.
+/// A corner, and flags for texture coordinates and normals that cannot exist.
 pub(super) type Read = (Corner, [bool; 2]);
 
-/// Reads `1`, `1/2`, `1//3`, `1/2/3`, and these with missing ends. Positions beyond the last are found later, as they may
-/// follow.
+/// Parses `1`, `1/2`, `1//3`, `1/2/3`, and these with empty ends. Positions out of range are
+/// checked later, because they may follow.
 pub(super) fn corner(word: &str, counts: Counts) -> Result<Read, String> {
     let mut parts = word.split('/');
     let mut number = || match parts.next() {
@@ -58,12 +58,12 @@ pub(super) fn corner(word: &str, counts: Counts) -> Result<Read, String> {
     ))
 }
 
-/// The message about a vertex that the file does not have.
+/// The message about a missing vertex.
 pub(super) fn missing(number: i64, count: usize) -> String {
     format!("a face names vertex {number} of {count}")
 }
 
-/// The index from 0 of a number from 1, or of one that counts back from the last.
+/// The index from 0 of a number from 1, or of a negative one that counts back from the last.
 fn resolve(number: i64, count: usize) -> Option<u32> {
     let index = match number {
         0 => return None,

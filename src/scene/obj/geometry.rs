@@ -1,4 +1,4 @@
-//! The statements of an OBJ file: vertices, faces, and which object, material and smoothing group faces have.
+//! Statements of an OBJ file: vertices, faces, objects, materials and smoothing groups.
 
 use std::collections::HashMap;
 
@@ -9,23 +9,23 @@ use super::lines::{lines, shown, without_comment, words};
 use crate::scene::progress::Progress;
 use crate::scene::warnings::Warnings;
 
-/// The name of an object that has none.
+/// Name of an unnamed object.
 const UNNAMED: &str = "unnamed_object";
-/// Lines between two looks at whether the reader is still wanted.
+/// Lines between two checks for cancellation.
 const LOOK: usize = 4096;
 
-/// How normals are generated if the file gives none.
+/// Normal generation if the file gives no normals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Smoothing {
-    /// The file has no groups: by angle.
+    /// By crease angle: the file has no groups.
     Angle,
-    /// Each face is flat.
+    /// Flat faces.
     Off,
-    /// The number of a group, from 0.
+    /// Index of a smoothing group.
     Group(u32),
 }
 
-/// A face: corners up to `end`, from the end of the face before.
+/// A face: its corners end at `end` and start at the end of the previous face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
     pub end: u32,
@@ -33,29 +33,29 @@ pub(super) struct Face {
     pub smoothing: Smoothing,
 }
 
-/// Faces that have one object and one material, up to those of the next piece.
+/// Consecutive faces with one object and one material.
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     pub object: String,
-    /// A number in [`Geometry::used`].
+    /// Index into [`Geometry::used`].
     pub material: Option<u32>,
     pub first_face: usize,
 }
 
-/// Everything that an OBJ file says, before any of it is looked up.
+/// The content of an OBJ file before references are resolved.
 #[derive(Debug, Default)]
 pub(super) struct Geometry {
     pub positions: Vec<[f32; 3]>,
-    /// sRGB of the first positions; the rest is white.
+    /// sRGB colours of the first positions; the others are white.
     pub colors: Vec<[f32; 3]>,
     pub uvs: Vec<[f32; 2]>,
     pub normals: Vec<[f32; 3]>,
     pub corners: Vec<Corner>,
     pub faces: Vec<Face>,
     pub pieces: Vec<Piece>,
-    /// Names of materials as faces use them.
+    /// Names of materials used by faces.
     pub used: IndexSet<String>,
-    /// Texts behind `mtllib`.
+    /// Arguments of `mtllib`.
     pub libraries: IndexSet<String>,
 }
 
@@ -69,7 +69,7 @@ impl Geometry {
     }
 }
 
-/// Reads a file's text. Errors begin with the line.
+/// Parses a file's text. Errors begin with the line number.
 pub(super) fn read(
     text: &str,
     warnings: &mut Warnings,
@@ -98,10 +98,10 @@ struct Reader<'a> {
     object: String,
     material: Option<u32>,
     smoothing: Smoothing,
-    /// Whether the next face begins a piece.
+    /// Whether the next face starts a new piece.
     changed: bool,
     groups: HashMap<String, u32>,
-    /// Statements that belong to the format, and those that do not.
+    /// Counts of known and unknown statements.
     known: usize,
     unknown: usize,
     warnings: &'a mut Warnings,
@@ -148,7 +148,7 @@ impl Reader<'_> {
             "maplib" | "usemap" => {
                 self.left_out("maplib and usemap are left out. Name maps in the material library")
             }
-            // Parts of the surfaces above, and settings of viewers.
+            // Free-form surface data and viewer settings.
             "cstype" | "deg" | "bmat" | "step" | "parm" | "trim" | "hole" | "scrv" | "sp"
             | "end" | "con" | "mg" | "bevel" | "c_interp" | "d_interp" | "lod" | "shadow_obj"
             | "trace_obj" | "ctech" | "stech" => {}
@@ -170,7 +170,7 @@ impl Reader<'_> {
     fn vertex(&mut self, rest: &str) -> Result<(), String> {
         self.all.positions.push(numbers(rest, "a position", 3)?);
         let others: Vec<&str> = words(rest).skip(3).take(4).collect();
-        // `x y z r g b`, or the same behind a weight.
+        // `x y z r g b`, or the same after a weight.
         let Some(color) = others
             .len()
             .checked_sub(3)
@@ -259,7 +259,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Checks the numbers of corners against all that the file holds.
+    /// Checks the indices of corners against the whole file.
     fn finish(mut self) -> Result<Geometry, String> {
         if self.all.positions.is_empty() && self.unknown > self.known {
             return Err(
@@ -296,7 +296,7 @@ impl Reader<'_> {
     }
 }
 
-/// Takes the texture coordinates or normals from a face of which some do not exist.
+/// Removes texture coordinates or normals from a face if some of them do not exist.
 fn without(corners: &mut [Corner], wrong: [bool; 2], line: u32, warnings: &mut Warnings) {
     if wrong[0] {
         corners.iter_mut().for_each(|corner| corner.uv = NONE);
@@ -314,7 +314,7 @@ fn without(corners: &mut [Corner], wrong: [bool; 2], line: u32, warnings: &mut W
     }
 }
 
-/// The first numbers of a line, at least `needed`.
+/// The leading numbers of a line, at least `needed`.
 fn numbers<const N: usize>(rest: &str, what: &str, needed: usize) -> Result<[f32; N], String> {
     let mut numbers = [0.0; N];
     let mut words = words(rest);

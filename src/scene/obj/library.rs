@@ -1,4 +1,4 @@
-//! Material libraries (MTL): the statements of each material, checked.
+//! Material libraries (MTL): the checked statements of each material.
 
 use std::collections::{BTreeMap, HashSet};
 use std::io::ErrorKind;
@@ -15,9 +15,9 @@ use crate::scene::warnings::Warnings;
 
 /// Libraries larger than this are refused.
 const MAX_BYTES: u64 = 64 << 20;
-/// Libraries of one model.
+/// Maximum number of libraries per model.
 const MAX_LIBRARIES: usize = 256;
-/// Largest part of a colour: far above what any lamp emits, and products of it are finite.
+/// Largest colour value: far above any lamp, and products stay finite.
 const MAX_COLOR: f32 = 1e12;
 
 const COLORS: [&str; 6] = ["ka", "kd", "ks", "ke", "tf", "specular_color"];
@@ -48,7 +48,7 @@ const MAPS: [(&str, &str); 9] = [
     ("map_bump", "map_Bump"),
     ("bump", "bump"),
 ];
-/// Maps that are left out.
+/// Unsupported maps.
 const OTHER_MAPS: [(&str, &str); 12] = [
     ("map_ka", "map_Ka"),
     ("map_ks", "map_Ks"),
@@ -64,7 +64,7 @@ const OTHER_MAPS: [(&str, &str); 12] = [
     ("map_refl", "map_Refl"),
 ];
 
-/// A file of materials, and what of it is left out.
+/// A material library, with warnings about unsupported content.
 #[derive(Debug)]
 pub(super) struct Library {
     pub path: PathBuf,
@@ -72,16 +72,16 @@ pub(super) struct Library {
     pub warnings: Warnings,
 }
 
-/// The statements of a material by their keywords in lower case; the last of each counts.
+/// The statements of a material by lower-case keyword; the last one wins.
 #[derive(Debug, Default)]
 pub(super) struct Definition {
     pub name: String,
-    /// The name with the comment behind it, which may be a part of the name.
+    /// The name including a trailing comment, which may be a part of the name.
     pub whole: String,
     pub values: BTreeMap<String, String>,
 }
 
-/// The libraries behind all `mtllib` of a model, each once. Missing ones are warnings.
+/// Loads the libraries of all `mtllib` lines, each once. Missing files give warnings.
 pub(super) fn load(
     entries: &IndexSet<String>,
     finder: &mut Finder,
@@ -125,13 +125,13 @@ pub(super) fn load(
     libraries
 }
 
-/// The files of one `mtllib`: one with blanks in its name, or several.
+/// The files of one `mtllib`: a name with blanks, or several names.
 fn paths(entry: &str, finder: &mut Finder, warnings: &mut Warnings) -> Vec<PathBuf> {
     let names = names(entry);
     if names.len() < 2 || finder.look(entry).1 == Found::Exact {
         return vec![finder.find(entry, warnings)];
     }
-    // If none is there, the entry was meant as one name.
+    // If none exists, the argument is treated as one name.
     if names.iter().all(|name| finder.look(name).1 == Found::No) {
         return vec![finder.find(entry, warnings)];
     }
@@ -141,7 +141,7 @@ fn paths(entry: &str, finder: &mut Finder, warnings: &mut Warnings) -> Vec<PathB
         .collect()
 }
 
-/// Words, or texts in quotes.
+/// Words, or quoted texts.
 fn names(entry: &str) -> Vec<&str> {
     let mut rest = without_comment(entry);
     let mut names = Vec::new();
@@ -176,7 +176,7 @@ fn read(path: PathBuf, text: &str) -> Library {
         }
         let number = line.number;
         let value = check(&key, rest, number, &mut library.warnings);
-        // Statements before the first material are checked all the same.
+        // Statements before the first material are checked as well.
         let material = library.materials.last_mut().unwrap_or(&mut unnamed);
         if let Some(value) = value {
             material.values.insert(key.into_owned(), value);
@@ -190,7 +190,7 @@ fn read(path: PathBuf, text: &str) -> Library {
     library
 }
 
-/// A statement's value as it is to be read, or none where it is left out.
+/// The value of a statement, or `None` if it is unsupported.
 fn check(key: &str, rest: &str, line: usize, warnings: &mut Warnings) -> Option<String> {
     let title = |list: &[(&str, &'static str)]| {
         list.iter()
@@ -227,7 +227,8 @@ fn check(key: &str, rest: &str, line: usize, warnings: &mut Warnings) -> Option<
         warnings.add(format!("{title} is left out"), shown(rest));
         return None;
     }
-    // Sheen, clearcoat and anisotropy of the metallic-roughness extension are written as 0 by most programs.
+    // Most programs write 0 for sheen, clearcoat and anisotropy of the metallic-roughness
+    // extension.
     let off = words(rest).all(|word| word.parse::<f32>() == Ok(0.0));
     match key {
         "pc" | "pcr" | "ps" | "aniso" | "anisor" if off => {}
@@ -244,7 +245,7 @@ fn color(key: &str, rest: &str, line: usize, warnings: &mut Warnings) -> Option<
     let title = cased(key);
     let numbers: Option<Vec<f32>> = words(rest).take(3).map(|w| w.parse().ok()).collect();
     let list = match numbers.as_deref() {
-        // One number is a grey by the format.
+        // A single number is a grey.
         Some([grey]) => [*grey; 3],
         Some([r, g, b]) => [*r, *g, *b],
         _ => {
@@ -273,7 +274,7 @@ fn color(key: &str, rest: &str, line: usize, warnings: &mut Warnings) -> Option<
     Some(format!("{r} {g} {b}"))
 }
 
-/// The usual case of a keyword.
+/// The usual spelling of a keyword.
 fn cased(key: &str) -> String {
     let capital = matches!(
         key.as_bytes(),
@@ -286,7 +287,7 @@ fn cased(key: &str) -> String {
     }
 }
 
-/// A line, where a warning shows it.
+/// A line number in a warning.
 struct At(usize);
 
 impl std::fmt::Display for At {

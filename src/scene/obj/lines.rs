@@ -1,9 +1,9 @@
-//! Lines of OBJ and MTL files as programs write them: marks, line ends, continuations, comments and case.
+//! Lines of OBJ and MTL files: byte order marks, line ends, continuations, comments and case.
 
 use std::borrow::Cow;
 
-/// The text of a file. UTF-16 is known by its mark; bytes that are not UTF-8 are replaced, as old files have names in
-/// other encodings.
+/// Decodes the text of a file. UTF-16 is detected by its byte order mark; invalid UTF-8 is
+/// replaced, because old files use other encodings.
 pub(super) fn decode(bytes: Vec<u8>) -> String {
     let utf16 = |rest: &[u8], unit: fn([u8; 2]) -> u16| {
         let units: Vec<u16> = rest
@@ -22,16 +22,16 @@ pub(super) fn decode(bytes: Vec<u8>) -> String {
     }
 }
 
-/// A statement: continuation lines are joined, blanks at both ends are removed.
+/// A statement with joined continuation lines and trimmed blanks.
 #[derive(Debug, PartialEq)]
 pub(super) struct Line<'a> {
-    /// The number of its first line in the file, from 1.
+    /// Number of its first line, from 1.
     pub number: usize,
     pub text: Cow<'a, str>,
 }
 
 impl Line<'_> {
-    /// The keyword in lower case, and the rest.
+    /// The lower-case keyword and the arguments.
     pub fn split(&self) -> (Cow<'_, str>, &str) {
         let (key, rest) = self.text.split_once(is_blank).unwrap_or((&self.text, ""));
         let lower = key.bytes().any(|b| b.is_ascii_uppercase());
@@ -44,7 +44,7 @@ impl Line<'_> {
     }
 }
 
-/// The statements of a text, without empty lines and comments.
+/// The statements of a text without empty lines and comments.
 pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     let mut rest = text;
     let mut number = 0;
@@ -79,7 +79,7 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     })
 }
 
-/// The next line of the file, trimmed: up to a line feed, a carriage return or both.
+/// The next trimmed line, ended by LF, CR or CRLF.
 fn next_line<'a>(rest: &mut &'a str) -> Option<&'a str> {
     if rest.is_empty() {
         return None;
@@ -95,7 +95,7 @@ fn next_line<'a>(rest: &mut &'a str) -> Option<&'a str> {
     Some(text[..end].trim_matches(is_blank))
 }
 
-/// Blanks, byte order marks (files are joined by `cat`), and the ends that DOS wrote.
+/// Blanks, byte order marks (from concatenated files), and the end-of-file character of DOS.
 fn is_blank(c: char) -> bool {
     c.is_whitespace() || matches!(c, '\0' | '\u{1a}' | '\u{feff}')
 }
@@ -109,7 +109,7 @@ pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
         .filter(|word| !word.is_empty())
 }
 
-/// A name without the comment behind it. `Material #25` of 3ds Max is a name.
+/// A name without a trailing comment. `Material #25` of 3ds Max is a name.
 pub(in crate::scene) fn without_comment(text: &str) -> &str {
     let is_comment = |at: &(usize, &str)| {
         let before = text[..at.0].ends_with(is_blank);
@@ -122,7 +122,7 @@ pub(in crate::scene) fn without_comment(text: &str) -> &str {
     text[..end].trim_end_matches(is_blank)
 }
 
-/// A name for a message: whatever a file calls itself is one short line.
+/// A name shortened to one line for a message.
 pub(in crate::scene) fn shown(name: &str) -> String {
     const LONGEST: usize = 60;
     let end = if name.chars().nth(LONGEST).is_some() {

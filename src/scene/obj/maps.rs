@@ -2,21 +2,21 @@
 
 use super::lines::without_comment;
 
-/// A picture of a material, and how it is laid on the surface.
+/// A texture of a material with its options.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Map {
-    /// As the library writes it; may have quotes, blanks and a comment.
+    /// As written in the library; may contain quotes, blanks and a comment.
     pub file: String,
     pub placement: Placement,
-    /// `-clamp on`: beyond the picture is the colour of its edge.
+    /// `-clamp on`: the edge colour continues outside the picture.
     pub clamp: bool,
-    /// `-bm`: the strength of a bump map.
+    /// `-bm`: strength of a bump map.
     pub strength: Option<f32>,
-    /// Options that have an effect elsewhere and none here.
+    /// Unsupported options.
     pub left_out: Vec<&'static str>,
 }
 
-/// Texture coordinates times a scale plus an offset (`-s` and `-o`), v upwards.
+/// Scale and offset of texture coordinates (`-s` and `-o`), v upwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Placement {
     pub scale: [f32; 2],
@@ -33,7 +33,8 @@ impl Default for Placement {
 }
 
 impl Placement {
-    /// Placed coordinates. The origin of OBJ is the lower left of the picture, that of scenes the upper left.
+    /// Transformed coordinates. OBJ has its origin at the lower left of the picture, scenes at the
+    /// upper left.
     pub fn of(&self, [u, v]: [f32; 2]) -> [f32; 2] {
         [
             u * self.scale[0] + self.offset[0],
@@ -48,7 +49,7 @@ impl Placement {
     }
 }
 
-/// The options and the file of an entry; none where no file is named.
+/// The options and file of an entry; `None` without a file.
 pub(super) fn parse(entry: &str) -> Option<Map> {
     let mut map = Map {
         file: String::new(),
@@ -84,7 +85,7 @@ pub(super) fn parse(entry: &str) -> Option<Map> {
                 rest = word(rest).1;
                 map.left_out.push("-imfchan");
             }
-            // How textures are filtered, and the shape of a reflection map: nothing of the surface.
+            // Filter options and reflection map shapes do not affect the surface.
             _ => rest = word(rest).1,
         }
     }
@@ -104,13 +105,13 @@ fn word(text: &str) -> (&str, &str) {
     (first, rest.trim_start())
 }
 
-/// Up to three numbers of which two are used; those that the entry leaves out, or that are not finite, keep their value.
+/// Up to three numbers, of which two are used; missing or non-finite ones keep their default.
 fn pair(rest: &mut &str, default: [f32; 2]) -> [f32; 2] {
     let [x, y, _] = numbers::<3>(rest);
     [x.unwrap_or(default[0]), y.unwrap_or(default[1])]
 }
 
-/// The numbers at the beginning, at most `N`. The last word is a file, even if it is a number.
+/// The leading numbers, at most `N`. The last word is the file, even if it is a number.
 fn numbers<const N: usize>(rest: &mut &str) -> [Option<f32>; N] {
     let mut found = [None; N];
     for number in &mut found {

@@ -1,4 +1,4 @@
-//! Materials of a library as the scene has them.
+//! Conversion of library materials to scene materials.
 
 use glam::Vec3;
 
@@ -10,13 +10,13 @@ use crate::scene::texture::{Requests, Source};
 use crate::scene::warnings::Warnings;
 use crate::scene::{Lookup, Material, Wrap};
 
-/// What faces need of their material.
+/// Properties of a material that its faces need.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Surface {
-    /// A number in the scene.
+    /// Index in the scene.
     pub material: u32,
     pub placement: Placement,
-    /// Whether nothing of it is there.
+    /// Whether the material is fully transparent.
     pub left_out: bool,
 }
 
@@ -28,7 +28,7 @@ pub(super) fn surface_of(surfaces: &[Surface], material: Option<u32>) -> Surface
         .unwrap_or_default()
 }
 
-/// A material with the placement of its pictures.
+/// A material with the placement of its textures.
 #[derive(Debug)]
 pub(super) struct Read {
     pub asked: Asked,
@@ -41,7 +41,7 @@ pub(super) const WORDS: Words = Words {
     heights: "bump maps that hold heights are left out. Convert them to normal maps, and write 'norm FILE'",
 };
 
-/// Finds pictures and requests them.
+/// Finds and requests textures.
 pub(super) struct Pictures<'a> {
     pub finder: &'a mut Finder,
     pub requests: &'a mut Requests,
@@ -166,7 +166,7 @@ impl Reader<'_, '_> {
         self.warnings.add(what, shown(&self.definition.name));
     }
 
-    /// The factor of a map. Viewers take a map as it is, and many files have a factor of 0 next to one.
+    /// The factor of a map. Many files have a factor of 0 next to a map, and viewers ignore it.
     fn factor(&mut self, key: &str, map: &str, has_map: bool) -> Option<Vec3> {
         let color = self.color(key);
         if !has_map {
@@ -194,8 +194,8 @@ impl Reader<'_, '_> {
         ))
     }
 
-    /// The normal map, and whether it may hold heights: a bump entry is a height map by the format, and a normal map in
-    /// many files.
+    /// The normal map, and whether it may hold heights: a bump entry is a height map in the format
+    /// but a normal map in many files.
     fn normal_map(&mut self) -> (Option<(Source, Map)>, bool) {
         let [norm, other] = ["norm", "map_kn"].map(|key| self.map(key));
         let [bump, other_bump] = ["map_bump", "bump"].map(|key| self.map(key));
@@ -206,7 +206,7 @@ impl Reader<'_, '_> {
         let Some((source, map)) = bump.or(other_bump) else {
             return (None, false);
         };
-        // Most bump maps hold heights: a checkerboard of normals would be wrong.
+        // Most bump maps hold heights, so a placeholder with normals would be wrong.
         if self.pictures.finder.look(&map.file).1 == Found::No {
             self.warnings.add(
                 "bump maps that are not there are left out",
@@ -217,7 +217,7 @@ impl Reader<'_, '_> {
         (Some((source, map)), true)
     }
 
-    /// Where pictures are: vertices have one set of coordinates, so that the first map decides.
+    /// Placement of the textures: vertices have one set of coordinates, so the first map decides.
     fn placement(&mut self, maps: [&Option<(Source, Map)>; 6]) -> Placement {
         let mut placements = maps.into_iter().flatten().map(|(_, map)| map.placement);
         let Some(first) = placements.next() else {

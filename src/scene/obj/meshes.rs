@@ -1,4 +1,4 @@
-//! Meshes of the faces of an OBJ file: one an object, with a submesh for each run of a material.
+//! Meshes from the faces of an OBJ file: one per object, with a submesh per run of one material.
 
 use std::collections::HashMap;
 
@@ -16,8 +16,8 @@ use crate::scene::progress::Progress;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Mesh, Submesh, Vertex};
 
-/// Meshes of all pieces, in the order of the file. `surfaces` has the material of each used name, and one more for faces
-/// that name none.
+/// Meshes of all pieces in file order. `surfaces` has one entry per used name and a last one for
+/// faces without a material.
 pub(super) fn build(
     geometry: &Geometry,
     surfaces: &[Surface],
@@ -53,11 +53,11 @@ pub(super) fn build(
 
 struct Builder {
     mesh: Mesh,
-    /// One for each triangle.
+    /// One per triangle.
     groups: Vec<Group>,
     has_normals: bool,
     lacks_normals: bool,
-    /// Vertices by what corners name, and by the placement of the material's pictures.
+    /// Vertices by the indices of their corner and the placement of the material's textures.
     vertices: HashMap<(Corner, [u32; 4]), u32, RandomState>,
 }
 
@@ -183,7 +183,7 @@ impl Builder {
     }
 }
 
-/// A colour of a vertex: programs that write them write what the screen shows.
+/// A vertex colour in linear RGB; programs write sRGB.
 fn linear(srgb: &[f32; 3]) -> [f32; 4] {
     let [r, g, b] = srgb.map(|c| {
         if c.is_finite() {

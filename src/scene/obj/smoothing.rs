@@ -1,4 +1,4 @@
-//! Normals by smoothing groups, for corners that have none.
+//! Normals from smoothing groups, for corners without normals.
 
 use std::collections::HashMap;
 
@@ -7,13 +7,14 @@ use glam::Vec3;
 use crate::scene::mesh::{corner_angles, face_normal, is_creased, point_key, weld};
 use crate::scene::{Mesh, Vertex};
 
-/// A point shared by more corners than this gets flat normals where angles decide: that is quadratic in it.
+/// Points with more corners get flat normals under angle-based smoothing, which takes quadratic
+/// time.
 const MAX_VALENCE: usize = 256;
 
-/// Triangles of one group are smooth together.
+/// Triangles of one group are smoothed together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Group {
-    /// Triangles that meet at a small angle.
+    /// Triangles that meet below the crease angle.
     Angle,
     /// Triangles of one face.
     Face(u32),
@@ -21,8 +22,8 @@ pub(super) enum Group {
     Number(u32),
 }
 
-/// Gives a normal to each corner with a normal of zero: the mean over the triangles of its group at that point, weighted
-/// by their angles. `groups` has one for each triangle.
+/// Replaces zero normals by the angle-weighted mean over the triangles of the group at that point.
+/// `groups` has one entry per triangle.
 pub(super) fn complete(mesh: &mut Mesh, groups: &[Group]) {
     let mut corners: Vec<Vertex> = mesh
         .indices
@@ -34,7 +35,7 @@ pub(super) fn complete(mesh: &mut Mesh, groups: &[Group]) {
         .iter()
         .map(|t| face_normal(t.map(|v| v.position)))
         .collect();
-    // A triangle without area has no say: its normal is arbitrary.
+    // The normal of a degenerate triangle is arbitrary, so its weight is 0.
     let weights: Vec<f32> = triangles.iter().flat_map(weights).collect();
     let mut at_point: HashMap<[u32; 3], Vec<u32>> = HashMap::new();
     for (i, corner) in corners.iter().enumerate() {
@@ -68,7 +69,7 @@ pub(super) fn complete(mesh: &mut Mesh, groups: &[Group]) {
     (mesh.vertices, mesh.indices) = weld(&corners);
 }
 
-/// The angles of a triangle's corners, or zeros where it has no area.
+/// The corner angles of a triangle, or zeros if it is degenerate.
 fn weights(triangle: &[Vertex; 3]) -> [f32; 3] {
     let [a, b, c] = triangle.map(|v| Vec3::from_array(v.position));
     let angles = corner_angles(triangle);

@@ -1,7 +1,8 @@
-//! Polygons to triangles: ear clipping in the plane of the polygon.
+//! Triangulation of polygons by ear clipping in the polygon's plane.
 //!
-//! An ear is blocked by a reflex corner inside of it. Reflex corners are in a tree, and a blocked ear is tried again once
-//! its blocker changes, so that polygons of a million corners take a bounded number of tests.
+//! A reflex corner inside an ear blocks it. Reflex corners are in a k-d tree, and a blocked ear is
+//! retried when its blocker changes, so that polygons of a million corners take a bounded number of
+//! tests.
 
 mod plane;
 mod tree;
@@ -11,22 +12,23 @@ use std::collections::VecDeque;
 use plane::{Inside, Point, cross, enters, inside};
 use tree::Tree;
 
-/// Tests of a polygon for each corner. Combs, spirals and stars of 100,000 corners need 36 to 300.
+/// Maximum tests per corner. Combs, spirals and stars of 100,000 corners need 36 to 300.
 const TESTS: usize = 400;
-/// Corners of a polygon that have as many tests; with more, each has fewer, which bounds the time.
+/// Corners up to which [`TESTS`] applies; larger polygons have fewer tests per corner, which bounds
+/// the time.
 const LARGE: usize = 100_000;
 const LARGE_TESTS: usize = 100;
 
-/// What became of a polygon.
+/// Outcome of a triangulation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Cut {
-    /// Its triangles may overlap, as its edges cross or touch.
+    /// Whether triangles may overlap because edges cross or touch.
     pub rough: bool,
-    /// Corners and nodes of the tree that were looked at.
+    /// Corners and tree nodes visited.
     pub tests: usize,
 }
 
-/// Appends the triangles of a polygon, as numbers of its corners, which turn as the polygon does.
+/// Appends the triangles of a polygon as corner indices with the polygon's winding.
 pub(super) fn triangulate(polygon: &[[f32; 3]], out: &mut Vec<[u32; 3]>) -> Cut {
     let count = polygon.len() as u32;
     let fan = |out: &mut Vec<[u32; 3]>| out.extend((2..count).map(|i| [0, i - 1, i]));
@@ -72,24 +74,25 @@ struct Clipper<'a> {
     gone: Vec<bool>,
     left: usize,
     reflex: Tree,
-    /// Corners that enclose nothing. They go first: an ear at an edge that returns may be outside.
+    /// Corners that enclose no area. They are removed first, because an ear at a returning edge may
+    /// be outside.
     nothing: Vec<u32>,
-    /// Corners that may be ears.
+    /// Candidate ears.
     queue: VecDeque<u32>,
     queued: Vec<bool>,
-    /// For each corner the last of the ears that it blocks, as a number in `blocked`.
+    /// For each corner, the last ear that it blocks, as an index into `blocked`.
     blocks: Vec<u32>,
-    /// Ears with the one before that is blocked by the same corner.
+    /// Blocked ears, linked to the previous one with the same blocker.
     blocked: Vec<(u32, u32)>,
-    /// Whether corners on the rim of an ear leave it one.
+    /// Whether corners on the boundary of an ear are ignored.
     relaxed: bool,
     rough: bool,
-    /// Twice the area of triangles that do not matter: rounded coordinates fold straight edges.
+    /// Twice the area below which a triangle is negligible: rounding folds straight edges.
     negligible: f64,
     tests: usize,
 }
 
-/// Area of a triangle that does not matter, for an area of 1 of the polygon.
+/// Negligible area relative to the polygon's.
 const NEGLIGIBLE: f64 = 1e-5;
 const END: u32 = u32::MAX;
 
@@ -144,7 +147,7 @@ impl Clipper<'_> {
         ]
     }
 
-    /// Above 0 where the polygon is convex.
+    /// Positive at a convex corner.
     fn turn(&self, corner: u32) -> f64 {
         let [a, b, c] = self.around(corner).map(|i| self.point(i));
         cross(a, b, c)
@@ -191,7 +194,7 @@ impl Clipper<'_> {
         self.fan(at, out);
     }
 
-    /// Cuts off a corner if that is right.
+    /// Clips a corner if it is an ear.
     fn attempt(&mut self, corner: u32, out: &mut Vec<[u32; 3]>) {
         if self.turn(corner) <= 0.0 {
             return;
@@ -208,14 +211,15 @@ impl Clipper<'_> {
         }
     }
 
-    /// Whether it is a doubled corner, or the tip of an edge that returns. A corner on a straight edge is neither.
+    /// Whether a corner duplicates a neighbour or is the tip of a returning edge. Corners on a
+    /// straight edge do not count.
     fn is_nothing(&self, corner: u32) -> bool {
         let [a, b, c] = self.around(corner).map(|i| self.point(i));
         let back = (a.x - b.x) * (c.x - b.x) + (a.y - b.y) * (c.y - b.y) > 0.0;
         cross(a, b, c) == 0.0 && (back || a == b || b == c)
     }
 
-    /// A corner inside of the triangle at a corner, or on its rim.
+    /// A corner inside the triangle at `corner`, or on its boundary.
     fn blocker(&mut self, corner: u32) -> Option<u32> {
         let [before, _, after] = self.around(corner);
         let triangle = self.around(corner).map(|i| self.point(i));
@@ -237,7 +241,7 @@ impl Clipper<'_> {
         found
     }
 
-    /// Takes a corner out; its neighbours, and the ears that the three block, may be ears now.
+    /// Removes a corner and queues its neighbours and the ears that the three block.
     fn remove(&mut self, corner: u32) {
         let [before, _, after] = self.around(corner);
         self.next[before as usize] = after;
@@ -271,7 +275,7 @@ impl Clipper<'_> {
         }
     }
 
-    /// Cuts off a convex corner near one that is not gone, whatever is inside. Where to look next.
+    /// Clips a convex corner near `at`, whatever it contains. Returns where to continue.
     fn force(&mut self, at: u32, out: &mut Vec<[u32; 3]>) -> u32 {
         const STEPS: usize = 64;
         let mut corner = at;
@@ -291,7 +295,7 @@ impl Clipper<'_> {
         self.next[corner as usize]
     }
 
-    /// The triangles of all that is left, from one corner.
+    /// Fans the remaining corners from one of them.
     fn fan(&mut self, from: u32, out: &mut Vec<[u32; 3]>) {
         let mut at = from;
         while self.gone[at as usize] {

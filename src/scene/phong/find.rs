@@ -1,4 +1,4 @@
-//! Files that a model names, as other machines write their paths.
+//! Lookup of files by paths written on other machines.
 
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
@@ -6,30 +6,30 @@ use std::path::{Component, Path, PathBuf};
 use crate::scene::obj::{shown, without_comment};
 use crate::scene::warnings::Warnings;
 
-/// Longer texts are no paths.
+/// Longer texts are not paths.
 const LONGEST: usize = 4096;
-/// Files that are not where they should be are searched for, up to this many: each costs some looks at the disk.
+/// Maximum number of searches for misplaced files; each costs several file system calls.
 const SEARCHES: usize = 4096;
-/// Entries of a folder that are compared without case.
+/// Maximum folder entries compared case-insensitively.
 const ENTRIES: usize = 1 << 16;
-/// Folders at the end of a foreign path that are tried.
+/// Trailing folders of a foreign path that are tried.
 const DEPTH: usize = 8;
 
-/// Finds files from the folder of the model.
+/// Finds files relative to the model's folder.
 pub(in crate::scene) struct Finder {
     folder: PathBuf,
-    /// Texts that were looked for.
+    /// Cached results.
     known: HashMap<String, (PathBuf, Found)>,
-    /// For each folder that was listed, names by their lower case.
+    /// For each listed folder, names by their lower case.
     listed: HashMap<PathBuf, HashMap<String, String>>,
     searches: usize,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::scene) enum Found {
-    /// Where the text says.
+    /// At the given path.
     Exact,
-    /// In another case or folder.
+    /// With other case or in another folder.
     Elsewhere,
     No,
 }
@@ -44,7 +44,8 @@ impl Finder {
         }
     }
 
-    /// The file that a text names, or where it would be. A file in another case or place is a warning.
+    /// The file of a path, or its expected location. A file with other case or in another folder
+    /// gives a warning.
     pub fn find(&mut self, text: &str, warnings: &mut Warnings) -> PathBuf {
         let (path, found) = self.look(text);
         if found == Found::Elsewhere {
@@ -89,7 +90,7 @@ impl Finder {
         (self.folder.join(name), Found::No)
     }
 
-    /// The file in another case, or the end of its path below the model's folder.
+    /// The file with other case, or the end of its path below the model's folder.
     fn elsewhere(&mut self, name: &str) -> Option<PathBuf> {
         let is_drive = |part: &&str| part.len() == 2 && part.ends_with(':');
         let parts: Vec<&str> = name
@@ -105,7 +106,7 @@ impl Finder {
             })
     }
 
-    /// A path below the model's folder, in any case.
+    /// A path below the model's folder, ignoring case.
     fn without_case(&mut self, name: &str) -> Option<PathBuf> {
         let mut path = self.folder.clone();
         for part in Path::new(name).components() {
@@ -136,7 +137,7 @@ impl Finder {
             let mut names: Vec<String> = entries
                 .filter_map(|entry| entry.file_name().into_string().ok())
                 .collect();
-            // The order of a folder is arbitrary: of `A` and `a`, the first by name counts.
+            // Folder order is arbitrary: of `A` and `a`, the first by name wins.
             names.sort_unstable_by(|a, b| b.cmp(a));
             names
                 .into_iter()
@@ -146,7 +147,7 @@ impl Finder {
     }
 }
 
-/// A text as a path: without quotes, with slashes.
+/// A normalised path: without quotes, with forward slashes.
 fn path_of(text: &str) -> String {
     let text = text.trim();
     let quoted = |q: char| {
@@ -160,7 +161,7 @@ fn path_of(text: &str) -> String {
         .replace('\\', "/")
 }
 
-/// Whether it is something that could be opened; only regular files will be.
+/// Whether the path exists; only regular files are opened later.
 fn is_there(path: &Path) -> bool {
     std::fs::metadata(path).is_ok_and(|found| !found.is_dir())
 }

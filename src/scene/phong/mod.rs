@@ -1,4 +1,4 @@
-//! Materials and pictures of formats that describe surfaces as Blinn and Phong did: OBJ with MTL, and FBX.
+//! Blinn-Phong materials and their textures: OBJ with MTL, and FBX.
 
 mod find;
 mod parts;

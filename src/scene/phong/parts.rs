@@ -1,4 +1,4 @@
-//! From the colours, numbers and maps of a file to a material of the scene.
+//! From colours, numbers and maps of a file to a scene material.
 
 use glam::{Vec3, Vec4};
 
@@ -7,22 +7,22 @@ use crate::scene::texture::{Recipe, Requests, Source};
 use crate::scene::warnings::Warnings;
 use crate::scene::{Lookup, Lookups, Material};
 
-/// A picture, and how it is looked up.
+/// A texture and its lookup.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::scene) struct Picture {
     pub image: Source,
     pub lookup: Lookup,
 }
 
-/// The pictures of a material, each of one kind.
+/// The textures of a material by kind.
 #[derive(Clone, Debug, Default)]
 pub(in crate::scene) struct Maps {
     pub color: Option<Picture>,
-    /// White is opaque.
+    /// Opacity: white is opaque.
     pub alpha: Option<Picture>,
-    /// Grey.
+    /// Grey roughness.
     pub roughness: Option<Picture>,
-    /// Grey.
+    /// Grey metallic.
     pub metallic: Option<Picture>,
     pub normal: Option<Picture>,
     /// Whether the normal map may hold heights.
@@ -36,10 +36,10 @@ pub(in crate::scene) struct Parts {
     pub name: String,
     pub base_color: Vec3,
     pub opacity: f32,
-    /// Below this alpha nothing is there, if the file names a number.
+    /// Alpha cutoff, if the file has one.
     pub cutoff: Option<f32>,
     pub roughness: Option<f32>,
-    /// The exponent of Blinn and Phong, used if there is no roughness.
+    /// Blinn-Phong exponent, used without a roughness.
     pub exponent: Option<f32>,
     pub metallic: Option<f32>,
     pub emission: Vec3,
@@ -52,7 +52,7 @@ impl Parts {
         self.cutoff.unwrap_or(0.5).clamp(0.0, 1.0)
     }
 
-    /// The material, with its pictures requested.
+    /// The material, with its textures requested.
     pub fn build(self, requests: &mut Requests) -> Asked {
         let cutoff = self.cutoff();
         let Parts { name, maps, .. } = self;
@@ -88,7 +88,7 @@ impl Parts {
             (None, None) => None,
         };
         let rough_metal = rough_map.is_some() || metal_map.is_some();
-        // A factor that is not given must not switch its map off.
+        // A missing factor must not disable its map.
         let metallic = self
             .metallic
             .unwrap_or(if metal_map.is_some() { 1.0 } else { 0.0 });
@@ -119,7 +119,8 @@ impl Parts {
             roughness: roughness.clamp(0.0, 1.0),
             emission: self.emission,
             alpha_cutoff: if masked { cutoff } else { 0.0 },
-            // These formats cannot say; windings of old files are unreliable, so nothing may be culled.
+            // These formats cannot express it, and windings of old files are unreliable, so nothing
+            // is culled.
             two_sided: true,
             base_color_texture,
             metallic_roughness_texture,
@@ -137,12 +138,12 @@ impl Parts {
     }
 }
 
-/// Roughness with a lobe as wide as that of an exponent.
+/// The roughness with the same lobe width as an exponent.
 fn roughness_of(exponent: f32) -> f32 {
     (2.0 / (exponent.max(0.0) + 2.0)).sqrt()
 }
 
-/// The material of faces without one. Colours of their vertices are their whole colour.
+/// The default material. Vertex colours replace its colour.
 pub(in crate::scene) fn grey(has_colors: bool) -> Material {
     let base_color = if has_colors {
         Vec4::ONE
@@ -156,7 +157,8 @@ pub(in crate::scene) fn grey(has_colors: bool) -> Material {
     }
 }
 
-/// An opacity from 0 to 1. Without a map the surface is there, or it is not; numbers between are a warning.
+/// An opacity from 0 to 1, rounded to visible or invisible without a map; intermediate values give
+/// a warning.
 pub(in crate::scene) fn opacity(
     opacity: f32,
     has_map: bool,

@@ -1,28 +1,28 @@
-//! What materials become once their pictures are known: masks by alpha, and bump maps that hold normals.
+//! Decisions that need decoded textures: masks by alpha, and bump maps that hold normals.
 
 use rayon::prelude::*;
 
 use crate::scene::texture::Holes;
 use crate::scene::{Material, Texture};
 
-/// A material, with questions that its pictures answer.
+/// A material with pending decisions.
 #[derive(Clone, Debug)]
 pub(in crate::scene) struct Asked {
     pub material: Material,
-    /// Whether the alpha of its picture may be a mask: the file has no other.
+    /// Whether the base colour's alpha may be a mask, because the file has no other.
     pub mask_by_alpha: bool,
-    /// Whether its normal map may hold heights.
+    /// Whether the normal map may hold heights.
     pub is_bump: bool,
 }
 
-/// Warnings in the words of a format.
+/// Format-specific wording of warnings.
 pub(in crate::scene) struct Words {
     pub holes: &'static str,
     pub all_clear: &'static str,
     pub heights: &'static str,
 }
 
-/// Decides by the content of pictures, and takes out those that no material uses any more. `warn` gets a material's number
+/// Decides by the content of textures and removes unused ones. `warn` receives a material's index
 /// and name, and a sentence.
 pub(in crate::scene) fn decide(
     mut materials: Vec<&mut Asked>,

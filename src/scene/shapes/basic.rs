@@ -1,4 +1,4 @@
-//! Boxes, quads, balls, and what turns about an axis.
+//! Boxes, quads, spheres and surfaces of revolution.
 
 use std::f32::consts::TAU;
 
@@ -14,13 +14,13 @@ pub(in crate::scene) struct Cuboid {
     pub material: Paint,
     pub low: Vec3,
     pub high: Vec3,
-    /// Faces that are left out, by the way that they look.
+    /// Omitted faces, by direction.
     #[serde(default)]
     open: Vec<String>,
-    /// Metres to a unit of the texture coordinates, here and below.
+    /// Metres per unit of the texture coordinates, here and below.
     #[serde(default = "one")]
     tile: f32,
-    /// The upright faces alone, seen from inside, each divided by 8.
+    /// Only the upright faces, seen from inside, each subdivided 8 times.
     #[serde(default)]
     inside: bool,
 }
@@ -76,7 +76,7 @@ impl Cuboid {
 pub(in crate::scene) struct Quad {
     material: Paint,
     corners: [Vec3; 4],
-    /// Along each edge.
+    /// Subdivisions per edge.
     #[serde(default = "undivided")]
     divisions: u32,
     #[serde(default = "one")]
@@ -223,14 +223,15 @@ fn icosahedron() -> [[Vec3; 3]; 20] {
     FACES.map(|face| face.map(|i| p[i]))
 }
 
-/// Surface of revolution around y: (radius, height) from bottom to top. uv is in turns and in metres over `tile`.
+/// Surface of revolution around y from (radius, height) points, bottom to top. u is the angle in
+/// units of 360 degrees; v is in metres over `tile`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Lathe {
     material: Paint,
     profile: Vec<Vec2>,
     sides: u32,
-    /// Along the profile.
+    /// Subdivisions along the profile.
     rows: u32,
     #[serde(default = "one")]
     tile: f32,
@@ -256,7 +257,7 @@ impl Lathe {
     }
 }
 
-/// The ends of the span that `v`, from 0 to 1 of all spans, is in, and where between them.
+/// The segment at `v` in 0..1 of all segments, and the position within it.
 pub(super) fn span(points: &[Vec2], v: f32) -> (Vec2, Vec2, f32) {
     let spans = points.len().saturating_sub(1) as f32;
     let x = (v * spans).clamp(0.0, spans);
@@ -265,7 +266,7 @@ pub(super) fn span(points: &[Vec2], v: f32) -> (Vec2, Vec2, f32) {
     (from, to, x - i as f32)
 }
 
-/// Closed cylinder that stands on the origin around y. The seam's corners are the same to the bit.
+/// Closed cylinder around y with its base at the origin. Corners at the seam are bit-identical.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Cylinder {
@@ -273,7 +274,7 @@ pub(in crate::scene) struct Cylinder {
     radius: f32,
     height: f32,
     sides: u32,
-    /// Between its two flat ends.
+    /// Subdivisions between its two flat ends.
     rows: u32,
 }
 
@@ -326,7 +327,7 @@ impl Cylinder {
     }
 }
 
-/// A circle of radius `tube` swept along an ellipse that `major` and `minor` span.
+/// A circle of radius `tube` swept along the ellipse spanned by `major` and `minor`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Ring {
@@ -348,7 +349,7 @@ impl Ring {
         let axis = major.cross(minor).normalize_or(Vec3::Y);
         mesh.surface(material, self.segments, Vec2::new(4.0, 1.0), |u, v| {
             let (s, c) = (u * TAU).sin_cos();
-            // The ellipse's own normal, so that thin links do not fold into themselves.
+            // The normal of the ellipse, so that thin links do not intersect themselves.
             let out = (major * (c / major.length_squared()) + minor * (s / minor.length_squared()))
                 .normalize();
             let (height, width) = (v * TAU).sin_cos();
@@ -357,7 +358,7 @@ impl Ring {
     }
 }
 
-/// Round rod without ends; `axis` is of unit length, and it reaches `half` metres both ways.
+/// Open cylinder; `axis` has unit length, and it extends `half` metres both ways.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Rod {

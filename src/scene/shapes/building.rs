@@ -8,7 +8,8 @@ use serde::Deserialize;
 use super::basic::span;
 use super::{MeshBuilder, Paint};
 
-/// Level rectangle facing up, a square for each `tile` metres; its texture lies still in the world.
+/// Horizontal rectangle facing up, subdivided every `tile` metres, with world-space texture
+/// coordinates.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Level {
@@ -31,22 +32,23 @@ impl Level {
     }
 }
 
-/// Wall along x over an elliptical arch that springs at y = 0; -z is its front, where a moulding frames the opening.
+/// Wall along x over an elliptical arch that springs at y = 0. The front is -z, where a moulding
+/// frames the opening.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Arch {
     material: Paint,
-    /// Of the soffit and the moulding.
+    /// Material of the soffit and the moulding.
     trim: Paint,
-    /// Half the wall's length and its height.
+    /// Half the wall's length, and its height.
     half: f32,
     top: f32,
-    /// Half the opening's width and its height.
+    /// Half the opening's width, and its height.
     opening: f32,
     rise: f32,
     /// Half the wall's thickness.
     thick: f32,
-    /// Section of the moulding: distances from the opening's edge and before the wall.
+    /// Profile of the moulding: distances from the opening's edge and in front of the wall.
     moulding: Vec<Vec2>,
 }
 
@@ -73,7 +75,7 @@ impl Arch {
             curve(u).extend((v * 2.0 - 1.0) * thick)
         });
         for side in [-1.0f32, 1.0] {
-            // From the arch up to the top, and the strips over the columns.
+            // From the arch to the top, and the strips above the columns.
             let point = |x: f32, y: f32| {
                 (
                     Vec3::new(x, y, side * thick),
@@ -108,13 +110,13 @@ impl Arch {
     }
 }
 
-/// Groin vault that springs at y = 0: the ceiling is the higher of two crossing barrels, so each half of it is a web between
-/// two diagonals.
+/// Groin vault that springs at y = 0. The ceiling is the higher of two crossing barrels, so each
+/// half is a web between two diagonals.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Vault {
     material: Paint,
-    /// Half its size along x and z.
+    /// Half its extent along x and z.
     half: Vec2,
     rise: f32,
 }
@@ -125,7 +127,7 @@ impl Vault {
         let material = mesh.paint(&self.material);
         let height = |x: f32| rise * (1.0 - x * x).max(0.0).sqrt();
         for side in [-1.0f32, 1.0] {
-            // Webs that touch the two edges across z, then those across x. Their fronts face down.
+            // Webs at the two edges across z, then those across x. Their fronts face down.
             mesh.surface(material, [10, 6], Vec2::ONE, |u, v| {
                 let (s, t) = ((u * 2.0 - 1.0) * side, v);
                 Vec3::new(s * t * half.x, height(s * t), side * t * half.y)
@@ -138,7 +140,7 @@ impl Vault {
     }
 }
 
-/// Section of (z, y) along x, longer or shorter by z at its mitred ends.
+/// Profile of (z, y) swept along x; the mitred ends extend by z.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Moulding {
@@ -168,12 +170,12 @@ impl Moulding {
     }
 }
 
-/// Bell of a capital around y, pressed out into two rows of eight leaves.
+/// Bell of a capital around y with two rows of eight leaves in relief.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Capital {
     material: Paint,
-    /// Of the column, and where the bell begins.
+    /// Radius of the column, and height at which the bell begins.
     radius: f32,
     foot: f32,
 }
@@ -200,15 +202,15 @@ impl Capital {
     }
 }
 
-/// Slope of a roof in waves.
+/// Roof slope with waves.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Slope {
     material: Paint,
-    /// The left and right ends of the eaves, then of the ridge.
+    /// Left and right ends of the eaves, then of the ridge.
     eaves: [Vec3; 2],
     ridge: [Vec3; 2],
-    /// About how long a wave is.
+    /// Approximate wavelength.
     wave: f32,
 }
 
@@ -225,7 +227,8 @@ impl Slope {
             [(waves as u32).saturating_mul(6), 5],
             Vec2::ONE,
             |u, v| {
-                // Tiles run straight up the slope, so the wave depends on the place along the eaves, not on u.
+                // Tiles run straight up the slope, so the wave depends on the position along the
+                // eaves, not on u.
                 let p = low_a.lerp(low_b, u).lerp(high_a.lerp(high_b, u), v);
                 let phase = (p - middle).dot(along) / width * waves * TAU;
                 p + Vec3::Y * (0.05 * phase.cos() + 0.05)
@@ -234,7 +237,7 @@ impl Slope {
     }
 }
 
-/// Half-round tiles over the line where two slopes meet.
+/// Half-round tiles along the line where two slopes meet.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Hip {
@@ -263,11 +266,11 @@ impl Hip {
 pub(in crate::scene) struct Bars {
     material: Paint,
     count: u32,
-    /// Of the circle that they end on, of the bulge, and of a bar.
+    /// Radius of the circle of their ends, of the bulge, and of a bar.
     radius: f32,
     bulge: f32,
     thick: f32,
-    /// From where up, and how far.
+    /// Height of the lower ends, and length.
     foot: f32,
     height: f32,
 }

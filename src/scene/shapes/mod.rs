@@ -1,6 +1,7 @@
-//! Shapes that scene files are put together of. All faces are counter-clockwise seen from outside.
+//! Shapes of scene files. All faces are counter-clockwise seen from outside.
 //!
-//! A shape's fields are those of the file; what is wrong with them is kept by the builder, first come, and told at the end.
+//! The fields of a shape are those of the file. The builder keeps the first error and reports it at
+//! the end.
 
 mod basic;
 mod building;
@@ -22,10 +23,10 @@ pub(super) use relief::{Specks, Vase};
 pub(super) use soft::{Banner, Chain, Crown, Curtain, Sprigs};
 pub(super) use solid::{Hollow, Solid};
 
-/// Vertices that a scene file's meshes may have, all together.
+/// Maximum vertices of all meshes of a scene file.
 pub(super) const MAX_VERTICES: u64 = 1 << 22;
 
-/// The name of a material, or several that are used in turn as a repetition counts.
+/// The name of a material, or several that a repetition cycles through.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(untagged)]
 pub(super) enum Paint {
@@ -33,25 +34,25 @@ pub(super) enum Paint {
     Several(Vec<String>),
 }
 
-/// What is wrong with a shape, and a name in the file that is near to it.
+/// An error in a shape, and a name near it in the file.
 #[derive(Debug)]
 pub(super) struct Problem {
     pub near: String,
     pub message: String,
 }
 
-/// Collects triangles by material; everything is placed by `transform`.
+/// Collects triangles by material, transformed by `transform`.
 pub(super) struct MeshBuilder<'a> {
     name: String,
     materials: &'a IndexMap<String, Material>,
     vertices: Vec<Vertex>,
-    /// The most vertices.
+    /// Remaining number of vertices.
     room: u64,
     triangles: IndexMap<u32, Vec<u32>>,
     transform: Mat4,
-    /// The inverse transpose: how normals go, for placements that scale unevenly.
+    /// Inverse transpose for normals under non-uniform scale.
     normals: Mat4,
-    /// How often what surrounds the shape was repeated before.
+    /// Index of the current repetition.
     pub number: u32,
     pub random: Random,
     pub problem: Option<Problem>,
@@ -73,7 +74,7 @@ impl<'a> MeshBuilder<'a> {
         }
     }
 
-    /// Where what follows stands.
+    /// Sets the transform of the geometry that follows.
     pub fn place(&mut self, transform: Mat4) {
         self.transform = transform;
         self.normals = transform.inverse().transpose();
@@ -100,7 +101,7 @@ impl<'a> MeshBuilder<'a> {
         Ok(mesh)
     }
 
-    /// Keeps what is wrong; the first counts.
+    /// Records an error; the first one is kept.
     pub fn fail(&mut self, near: &str, message: String) {
         self.problem.get_or_insert(Problem {
             near: near.into(),
@@ -108,7 +109,7 @@ impl<'a> MeshBuilder<'a> {
         });
     }
 
-    /// Whether nothing is wrong and so many more vertices may be added.
+    /// Whether there is no error and room for `more` vertices.
     pub fn has_room(&mut self, more: u64) -> bool {
         if self.vertices.len() as u64 + more > self.room {
             self.fail(
@@ -119,7 +120,7 @@ impl<'a> MeshBuilder<'a> {
         self.problem.is_none()
     }
 
-    /// The number of a material by its name.
+    /// The index of a material by name.
     pub fn paint(&mut self, paint: &Paint) -> u32 {
         let name = match paint {
             Paint::One(name) => name,
@@ -161,7 +162,7 @@ impl<'a> MeshBuilder<'a> {
         self.triangles.entry(material).or_default().extend(corners);
     }
 
-    /// Flat quad, corners counter-clockwise from its front, divided `n` by `n`; uv in metres over `tile`.
+    /// Flat quad with counter-clockwise corners, subdivided `n` by `n`; uv in metres over `tile`.
     pub fn quad(&mut self, material: u32, corners: [Vec3; 4], n: u32, tile: f32) {
         let [a, b, c, d] = corners;
         let normal = (c - a).cross(d - b).normalize_or(Vec3::Y);
@@ -172,8 +173,8 @@ impl<'a> MeshBuilder<'a> {
         });
     }
 
-    /// Grid over u and v in 0..1 of given positions, normals and texture coordinates.
-    /// The front is where u goes right and v goes up.
+    /// Grid over u and v in 0..1 from positions, normals and texture coordinates. The front is
+    /// where u increases to the right and v upwards.
     pub fn grid(
         &mut self,
         material: u32,
@@ -200,7 +201,7 @@ impl<'a> MeshBuilder<'a> {
         }
     }
 
-    /// Smooth parametric surface over u and v in 0..1; normals come from its derivatives.
+    /// Smooth parametric surface over u and v in 0..1; normals are derived from derivatives.
     pub fn surface(
         &mut self,
         material: u32,
@@ -215,7 +216,7 @@ impl<'a> MeshBuilder<'a> {
             du.cross(dv)
         };
         self.grid(material, divisions, |u, v| {
-            // At a pole the derivative vanishes; a point beside it has nearly the same normal.
+            // The derivative vanishes at a pole; a nearby point has nearly the same normal.
             let inner = v.clamp(5e-3, 1.0 - 5e-3);
             let normal = normal_at(u, v);
             let normal = if normal.length_squared() > 1e-14 {
@@ -231,7 +232,7 @@ impl<'a> MeshBuilder<'a> {
         });
     }
 
-    /// Box with uv in metres over `tile`; `faces` says which of -x, +x, -y, +y, -z, +z to build.
+    /// Box with uv in metres over `tile`; `faces` selects -x, +x, -y, +y, -z, +z.
     pub fn cuboid(&mut self, material: u32, low: Vec3, high: Vec3, tile: f32, faces: [bool; 6]) {
         let p = |x: u8, y: u8, z: u8| {
             let pick = |i: u8, l: f32, h: f32| if i == 0 { l } else { h };
@@ -255,7 +256,7 @@ impl<'a> MeshBuilder<'a> {
     }
 }
 
-/// Faces of a box by the way that they look.
+/// Faces of a box by direction.
 pub(super) const FACES: [&str; 6] = ["-x", "+x", "-y", "+y", "-z", "+z"];
 
 fn one() -> f32 {

@@ -1,8 +1,8 @@
-//! Deterministic noise, tiling over the unit square, and random numbers.
+//! Deterministic tiling noise, and random numbers.
 
 use crate::scene::splitmix;
 
-/// SplitMix64 as a source of floats.
+/// SplitMix64 random floats.
 pub(in crate::scene) struct Random(pub u64);
 
 impl Random {
@@ -17,14 +17,14 @@ impl Random {
     }
 }
 
-/// A number in 0..1 for a lattice point.
+/// Random value in 0..1 of a grid point.
 pub(super) fn hash(x: i32, y: i32, seed: u32) -> f32 {
     let key = (x as u32 as u64) | (y as u32 as u64) << 24 | u64::from(seed) << 48;
-    // One step of the sequence, multiplied by its stride first.
+    // One step of the sequence, with the key multiplied by its stride first.
     Random(key.wrapping_sub(1).wrapping_mul(0x9E37_79B9_7F4A_7C15)).unit()
 }
 
-/// Value noise in 0..1 with `cells` lattice cells over the unit square, which tiles.
+/// Tiling value noise in 0..1 with `cells` cells per side of the unit square.
 pub(super) fn value(u: f32, v: f32, cells: i32, seed: u32) -> f32 {
     let (x, y) = (u * cells as f32, v * cells as f32);
     let (i, j) = (x.floor() as i32, y.floor() as i32);

@@ -1,4 +1,4 @@
-//! Images made by code. Colours are sRGB values in 0..1; every image tiles unless it says otherwise.
+//! Procedural textures. Colours are sRGB in 0..1; textures tile unless stated otherwise.
 
 use glam::{Vec2, Vec3, Vec4};
 use serde::Deserialize;
@@ -7,10 +7,10 @@ use super::noise::{fractal, hash, value};
 use crate::scene::texture::{Filter, texture_from_rgba};
 use crate::scene::{Texture, TextureFormat};
 
-/// Largest side of a texture that is drawn.
+/// Largest side of a procedural texture.
 const MAX_SIZE: u32 = 2048;
 
-/// A texture that is drawn.
+/// A procedural texture.
 #[derive(Debug, Deserialize)]
 #[serde(try_from = "PictureFields")]
 pub(in crate::scene) struct Picture(PictureFields);
@@ -24,7 +24,7 @@ struct PictureFields {
     pattern: Pattern,
 }
 
-/// What is drawn. Normals come from the same pattern's heights over a square of so many metres.
+/// The pattern. Normal maps use its height field over a square of the given size [m].
 #[derive(Clone, Copy, Debug, Deserialize)]
 enum Pattern {
     Ashlar,
@@ -38,7 +38,7 @@ enum Pattern {
     RoofTiles,
     Wood,
     Cloth(Vec3),
-    /// With alpha, for masking at 0.5.
+    /// With alpha, for a cutoff of 0.5.
     Leaves,
 }
 
@@ -139,13 +139,14 @@ fn texels(size: u32, texel: impl Fn(f32, f32) -> Vec4) -> Vec<u8> {
     rgba
 }
 
-/// Where a point is in a wall of blocks: the block's own random number and the depth inside of it, 0 in the joint.
+/// A position in a wall of blocks: the block's random number and the depth inside it, 0 in the
+/// joint.
 struct Block {
     random: f32,
     depth: f32,
 }
 
-/// Running bond of `rows` by `columns` blocks with joints of the given width (in tiles).
+/// Running bond of `rows` by `columns` blocks; the joint width is in tiles.
 fn masonry(u: f32, v: f32, rows: i32, columns: i32, joint: f32) -> Block {
     let y = v * rows as f32;
     let row = y.floor() as i32;
@@ -225,7 +226,7 @@ fn tile(u: f32, v: f32) -> (i32, i32, f32) {
     )
 }
 
-/// Thin dark lines where noise crosses its middle.
+/// Thin dark lines along a contour of the noise.
 fn vein(u: f32, v: f32, seed: u32) -> f32 {
     let warped = fractal(u, v, 4, seed);
     (1.0 - (warped - 0.5).abs() * 14.0).clamp(0.0, 1.0)
@@ -259,7 +260,7 @@ fn wood(u: f32, v: f32) -> Vec3 {
         }
 }
 
-/// Woven cloth with a pattern of lozenges; over the whole cloth, so it has hems and does not tile.
+/// Woven cloth with lozenges; has hems over the whole texture, so it does not tile.
 fn cloth(u: f32, v: f32, color: Vec3) -> Vec3 {
     let gold = Vec3::new(0.86, 0.66, 0.28);
     let weave = 0.94 + 0.06 * ((u * 400.0).sin() * (v * 400.0).sin());
@@ -272,7 +273,7 @@ fn cloth(u: f32, v: f32, color: Vec3) -> Vec3 {
     (if hem { gold } else { ground }) * weave
 }
 
-/// A sprig of seven pointed leaves on a stem; transparent around it and not tiling.
+/// A sprig of seven pointed leaves on a stem; transparent around it, does not tile.
 fn leaves(u: f32, v: f32) -> Vec4 {
     let p = Vec2::new(u - 0.5, 1.0 - v);
     let stem_x = 0.03 * (p.y * 7.0).sin();

@@ -1,4 +1,4 @@
-//! Surfaces of many small triangles.
+//! Finely tessellated surfaces.
 
 use std::f32::consts::TAU;
 
@@ -9,19 +9,19 @@ use super::basic::flat_triangle;
 use super::noise::fractal;
 use super::{MeshBuilder, Paint};
 
-/// Vase on the origin around y, with flutes that wind upwards and a grain.
+/// Vase around y with its base at the origin, with twisted flutes and grain.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Vase {
     material: Paint,
-    /// From foot to lip, evenly spaced, rounded in between.
+    /// Radii from foot to lip, evenly spaced and interpolated smoothly.
     radii: Vec<f32>,
     height: f32,
-    /// Depth of the flutes, their number, and how far they wind (radians of a flute's wave).
+    /// Depth of the flutes, their number, and their twist (radians of a flute's wave).
     flutes: (f32, f32, f32),
-    /// Height of the grain.
+    /// Amplitude of the grain.
     grain: f32,
-    /// To which what is repeated adds its number.
+    /// The index of the repetition is added.
     #[serde(default)]
     seed: u32,
     sides: u32,
@@ -51,14 +51,14 @@ impl Vase {
     }
 }
 
-/// Small triangles all over a sphere.
+/// Small triangles distributed over a sphere.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Specks {
     material: Paint,
     centre: Vec3,
     radius: f32,
-    /// Of a triangle's two equal sides.
+    /// Length of the two equal sides.
     size: f32,
     count: u32,
 }

@@ -1,4 +1,4 @@
-//! What hangs and grows: cloth, chains, leaves.
+//! Cloth, chains and leaves.
 
 use std::f32::consts::{PI, TAU};
 
@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::basic::Ring;
 use super::{MeshBuilder, Paint};
 
-/// Long cloth around x = 0 that falls in folds in the plane z = 0.
+/// Long cloth around x = 0 that hangs in folds in the plane z = 0.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Banner {
@@ -17,7 +17,7 @@ pub(in crate::scene) struct Banner {
     bottom: f32,
     /// Half its width.
     half: f32,
-    /// Banners of other phases fold differently.
+    /// Phase of the folds.
     phase: f32,
 }
 
@@ -33,12 +33,12 @@ impl Banner {
         let material = mesh.paint(&self.material);
         mesh.surface(material, [32, 28], Vec2::ONE, |u, v| {
             let (x, drop) = (u * 2.0 - 1.0, 1.0 - v);
-            // Folds grow on the way down and the lower hem swings a little.
+            // Folds grow downwards, and the hem swings slightly.
             let depth = 0.015 + 0.085 * drop.sqrt();
             let fold = (x * 3.5 * PI + phase + 0.9 * (drop * 2.5 + phase).sin()).sin();
             let swing = 0.10 * drop * drop * (x * 1.7 + phase).cos();
             let narrow = 1.0 - 0.08 * (PI * drop).sin();
-            // The lower edge hangs in a shallow point.
+            // The lower edge forms a shallow point.
             let edge = 0.28 * (1.0 - x.abs()) * drop;
             Vec3::new(
                 x * half * narrow,
@@ -49,16 +49,16 @@ impl Banner {
     }
 }
 
-/// Curtain that is drawn to a side and tied there, in the plane z = 0.
+/// Curtain in the plane z = 0, drawn and tied to one side.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Curtain {
     material: Paint,
     top: f32,
     bottom: f32,
-    /// Where it is tied, 0 to 1 of its height.
+    /// Height of the tie, 0 to 1.
     tie: f32,
-    /// Where it ends, of either sign.
+    /// Signed position of its end.
     side: f32,
 }
 
@@ -74,7 +74,7 @@ impl Curtain {
         let material = mesh.paint(&self.material);
         mesh.surface(material, [28, 18], Vec2::new(0.7, 1.0), |u, v| {
             let y = bottom + (top - bottom) * v;
-            // Width left at this height: full at the rod, a handful at the tie, a little more below.
+            // Width at this height: full at the rod, narrow at the tie, slightly wider below.
             let above = ((v - tie) / (1.0 - tie)).max(0.0);
             let below = ((tie - v) / tie).max(0.0);
             let width = 0.24 + 0.80 * above.powf(1.7) + 0.16 * below.sqrt();
@@ -88,14 +88,14 @@ impl Curtain {
     }
 }
 
-/// Links, each a quarter turn from the last.
+/// Links, each rotated by 90 degrees.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Chain {
     material: Paint,
-    /// Its beginning; of one that sags, the middle between its ends.
+    /// Start; for a sagging chain, the middle between its ends.
     from: Vec3,
-    /// To its end.
+    /// Vector to its end.
     along: Vec3,
     #[serde(default)]
     sag: f32,
@@ -136,7 +136,7 @@ impl Chain {
     }
 }
 
-/// Leaves in an ellipsoid, more of them near its surface.
+/// Leaves in an ellipsoid, denser near its surface.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Crown {
@@ -144,7 +144,7 @@ pub(in crate::scene) struct Crown {
     count: u32,
     centre: Vec3,
     radii: Vec3,
-    /// Least and most of a leaf.
+    /// Minimum and maximum size of a leaf.
     size: (f32, f32),
 }
 
@@ -186,7 +186,7 @@ impl Crown {
     }
 }
 
-/// Sprigs of leaves, each a bent card for a texture with a mask.
+/// Sprigs of leaves, each a bent card with a masked texture.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Sprigs {
@@ -196,11 +196,11 @@ pub(in crate::scene) struct Sprigs {
 
 #[derive(Clone, Copy, Debug, Deserialize)]
 enum Grows {
-    /// A bush of so many, its foot at the origin.
+    /// A bush of this many sprigs, rooted at the origin.
     Bush(u32),
-    /// So many around a shaft of radius 0.25 m, up to a height.
+    /// This many sprigs around a shaft of radius 0.25 m, up to a height.
     Climbing(u32, f32),
-    /// Seven strands that fall toward -z or +z.
+    /// Seven strands that hang toward -z or +z.
     Hanging(f32),
 }
 
@@ -270,7 +270,8 @@ impl Sprigs {
         }
     }
 
-    /// One from its root along a direction, bent a little and turned by chance; whether there is room for more.
+    /// A card from its root along a direction, bent slightly and rotated randomly. Returns whether
+    /// there is room for more.
     fn card(&self, mesh: &mut MeshBuilder, root: Vec3, along: Vec3, size: f32) -> bool {
         let material = mesh.paint(&self.material);
         let turn = Quat::from_axis_angle(along, mesh.random.unit() * TAU);

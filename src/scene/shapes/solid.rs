@@ -1,4 +1,4 @@
-//! Walls with real thickness: boxes filled and hollowed out on one grid, so that what is closed has no cracks.
+//! Watertight walls: boxes are added to and subtracted from a common grid.
 
 use glam::Vec3;
 use indexmap::IndexMap;
@@ -6,24 +6,24 @@ use serde::Deserialize;
 
 use super::{FACES, MeshBuilder, Paint};
 
-/// Cuts closer than this are one, so that rounding makes no slivers (m).
+/// Cuts closer than this are merged, so that rounding makes no slivers [m].
 const SAME_CUT: f32 = 1e-4;
 
-/// Cells of the grid, times boxes: of one solid.
+/// Maximum grid cells times boxes of one solid.
 const MAX_WORK: usize = 1 << 24;
 
-/// Materials of a hollow's faces by their normals -x, +x, -y, +y, -z, +z.
+/// Materials of the faces of a subtracted box by normal: -x, +x, -y, +y, -z, +z.
 type Lining = [u32; 6];
 
-/// A box that is hollowed out.
+/// A subtracted box.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Hollow {
-    /// Of the faces that it lays bare.
+    /// Material of the exposed faces.
     material: Paint,
     low: Vec3,
     high: Vec3,
-    /// Other materials, by the way that a face looks: "+y" is the floor of a room.
+    /// Overrides by face direction: "+y" is the floor of a room.
     #[serde(default)]
     faces: IndexMap<String, Paint>,
 }
@@ -50,14 +50,14 @@ impl Hollow {
     }
 }
 
-/// What the inside of a box is made of.
+/// Content of a box.
 #[derive(Clone, Copy)]
 enum Stuff {
     Solid(u32),
     Hollow(Lining),
 }
 
-/// Boxes in the order in which they are filled or hollowed out: the last one that holds a point says what is there.
+/// Boxes in order; the last one that contains a point decides.
 #[derive(Default)]
 pub(in crate::scene) struct Solid {
     boxes: Vec<(Vec3, Vec3, Stuff)>,
@@ -68,8 +68,7 @@ impl Solid {
         self.boxes.push((low, high, Stuff::Solid(material)));
     }
 
-    /// Adds the surface: the faces between cells of the grid that are solid and those that are not. Returns what it took,
-    /// in cells times boxes.
+    /// Adds the surface between solid and empty grid cells. Returns the work in cells times boxes.
     pub fn build(&self, mesh: &mut MeshBuilder) -> usize {
         let cuts = [0, 1, 2].map(|axis| self.cuts(axis));
         let work = cuts.iter().fold(self.boxes.len(), |work, cuts| {
@@ -82,7 +81,7 @@ impl Solid {
         let corner =
             |cell: [usize; 3]| Vec3::from_array([0, 1, 2].map(|axis| cuts[axis][cell[axis]]));
         let stuff = |cell: [usize; 3]| {
-            // The last cut ends the grid; one below the first wraps around to far beyond the last.
+            // The last cut ends the grid; an index below the first wraps far beyond the last.
             let inside = (0..3).all(|axis| cell[axis] < cuts[axis].len() - 1);
             inside
                 .then(|| self.at((corner(cell) + corner(cell.map(|i| i + 1))) * 0.5))
@@ -118,7 +117,7 @@ impl Solid {
         work
     }
 
-    /// Coordinates at which a box begins or ends, in order.
+    /// Sorted coordinates of box faces along an axis.
     fn cuts(&self, axis: usize) -> Vec<f32> {
         let mut cuts: Vec<f32> = self
             .boxes

@@ -1,23 +1,24 @@
-//! Kinds of pictures by their texels, for formats that do not name the kind.
+//! Classification of textures by their texels, for formats without a declared kind.
 
 use rayon::prelude::*;
 
 use super::{Filter, Texture, TextureFormat, first_level_rgba, texture_from_rgba};
 
-/// Texels of a picture that are looked at to know its kind.
+/// Maximum texels sampled for the classification.
 const SAMPLES: usize = 1 << 16;
 
-/// Texels of a picture with an alpha below 0.5.
+/// Texels with an alpha below 0.5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::scene) enum Holes {
     None,
     Some,
-    /// All of them: such an alpha was not meant.
+    /// All of them, so that the alpha was unintended.
     All,
 }
 
 impl Texture {
-    /// Whether a picture has normals and not heights: it has colour, and its texels are of about unit length.
+    /// Whether the texture holds normals rather than heights: it is coloured, and texels are about
+    /// unit length.
     pub(in crate::scene) fn holds_normals(&self) -> bool {
         if matches!(
             self.format,
@@ -38,11 +39,11 @@ impl Texture {
             let length = (x * x + y * y + z * z).sqrt();
             unit += usize::from(z > 0.0 && (0.7..1.35).contains(&length));
         }
-        // Compression and shrinking shorten some normals; a few grey texels may be of unit length.
+        // Compression and scaling shorten some normals; a few grey texels may have unit length.
         2 * grey < count && 4 * unit > 3 * count
     }
 
-    /// Whether the picture's alpha has holes.
+    /// Whether the alpha has holes.
     pub(in crate::scene) fn holes(&self) -> Holes {
         if matches!(
             self.format,
@@ -66,7 +67,7 @@ impl Texture {
         }
     }
 
-    /// With mips that keep the share of texels above an alpha of 0.5. Stored mips of compressed pictures stay.
+    /// With mips that preserve alpha coverage at 0.5. Stored mips of compressed textures are kept.
     pub(in crate::scene) fn masked(self) -> Texture {
         match self.format {
             TextureFormat::Rgba8Srgb | TextureFormat::Rgba8Unorm => {

@@ -1,4 +1,4 @@
-//! DDS files: block-compressed levels are kept as stored, anything else is decoded to RGBA8.
+//! DDS files: block-compressed levels are kept, other formats are decoded to RGBA8.
 
 use ddsfile::Dds;
 use image::RgbaImage;
@@ -6,7 +6,7 @@ use image_dds::{ImageFormat, Surface, dds_image_format};
 
 use super::{Filter, Notice, Texture, TextureFormat, mips, texture_from_rgba};
 
-/// Texture from a DDS file; whether it is sRGB follows from its use, not from the file.
+/// Texture from a DDS file; `srgb` follows from its use, not from the file.
 pub(super) fn texture(
     bytes: &[u8],
     name: &str,
@@ -20,7 +20,7 @@ pub(super) fn texture(
         return uncompressed(file, name, srgb, filter, max_side, warnings);
     };
     let levels = stored_levels(&file, format)?;
-    // Levels above the limit are left out where the file stores smaller ones.
+    // Levels above the size limit are skipped if the file has smaller ones.
     let fits = |level: &usize| {
         let (width, height) = level_size(&file, *level);
         width.max(height) <= max_side
@@ -110,7 +110,7 @@ fn parse(bytes: &[u8]) -> Result<File<'_>, String> {
     })
 }
 
-/// The texture format that keeps the file's blocks, or none where they must be decoded.
+/// The format that keeps the file's blocks, or `None` if they must be decoded.
 fn kept_format(format: ImageFormat, srgb: bool) -> Option<TextureFormat> {
     use TextureFormat::*;
     let pick = |color, data| Some(if srgb { color } else { data });

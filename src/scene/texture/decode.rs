@@ -1,4 +1,4 @@
-//! From image files to textures. Image files are not trusted: sizes and memory are limited.
+//! From untrusted image files to textures; sizes and memory are limited.
 
 use std::borrow::Cow;
 use std::io::Cursor;
@@ -12,7 +12,7 @@ use super::{
     Filter, Notice, Recipe, Source, Texture, TextureFormat, dds, ktx2, mips, texture_from_rgba,
 };
 
-/// Formats of image files, besides DDS and KTX2.
+/// Supported image formats besides DDS and KTX2.
 const READ: [ImageFormat; 5] = [
     ImageFormat::Png,
     ImageFormat::Jpeg,
@@ -24,13 +24,13 @@ const READ: [ImageFormat; 5] = [
 pub(super) const MAX_FILE_SIDE: u32 = 16384;
 /// Largest memory of a decoded image.
 pub(in crate::scene) const MAX_FILE_BYTES: u64 = 512 << 20;
-/// Larger textures are reduced to this.
+/// Larger textures are reduced to this side.
 const MAX_SIDE: u32 = 4096;
 
-/// The file and what is wrong with it.
+/// The file and the error.
 type Failure = (String, String);
 
-/// Texture for a recipe; reductions go to the warnings.
+/// The texture of a recipe; reductions are added to the warnings.
 pub(super) fn cook(recipe: &Recipe, warnings: &mut Vec<Notice>) -> Result<Texture, Failure> {
     match recipe {
         Recipe::Color { image, mask } => {
@@ -52,7 +52,7 @@ pub(super) fn cook(recipe: &Recipe, warnings: &mut Vec<Notice>) -> Result<Textur
     }
 }
 
-/// Level 0 of a texture as RGBA8, decompressed where it is compressed.
+/// Level 0 of a texture as decompressed RGBA8.
 pub(in crate::scene) fn first_level_rgba(texture: &Texture) -> Result<Cow<'_, [u8]>, String> {
     let level = texture.mips.first().ok_or("it has no levels")?;
     match texture.format {
@@ -61,7 +61,7 @@ pub(in crate::scene) fn first_level_rgba(texture: &Texture) -> Result<Cow<'_, [u
     }
 }
 
-/// A colour texture at a low resolution, linear.
+/// A linear colour texture at a low resolution.
 #[derive(Clone, Debug)]
 pub struct SmallPicture {
     /// Texels.
@@ -72,7 +72,7 @@ pub struct SmallPicture {
 }
 
 impl SmallPicture {
-    /// The texel at texture coordinates, which repeat: linear colour, and alpha.
+    /// The texel at repeating texture coordinates: linear colour and alpha.
     pub fn at(&self, uv: Vec2) -> Vec4 {
         let index = |t: f32, n: u32| ((t.rem_euclid(1.0) * n as f32) as u32).min(n - 1);
         let place = index(uv.y, self.height) * self.width + index(uv.x, self.width);
@@ -81,7 +81,8 @@ impl SmallPicture {
 }
 
 impl Texture {
-    /// The finest level that is at most so many texels wide and high; none where the texture has none or cannot be decoded.
+    /// The finest level of at most `most` texels per side; `None` if there is none or it cannot be
+    /// decoded.
     pub fn small(&self, most: u32) -> Option<SmallPicture> {
         let sized = (0u32..).zip(&self.mips).map(|(level, bytes)| {
             (
@@ -133,7 +134,7 @@ fn color_and_mask(
         Some(color) => pixels(color)?,
         None => RgbaImage::from_pixel(mask.width(), mask.height(), image::Rgba([255; 4])),
     };
-    // A mask with an alpha channel means that channel, a grey one its brightness.
+    // A mask with an alpha channel uses that channel, a grey one its brightness.
     let has_alpha = mask.pixels().any(|p| p.0[3] < 255);
     let (w, h) = result.dimensions();
     for (x, y, pixel) in result.enumerate_pixels_mut() {
@@ -234,7 +235,7 @@ fn is_dds(bytes: &[u8]) -> bool {
     bytes.starts_with(b"DDS ")
 }
 
-/// By the file's own magic; TGA has none, so there the name's extension decides.
+/// The format follows from the file's magic number; TGA has none, so its extension decides.
 fn decode(bytes: &[u8], name: &str) -> Result<RgbaImage, String> {
     if ktx2::is_ktx2(bytes) {
         return ktx2::pixels(bytes);
@@ -252,7 +253,7 @@ fn decode(bytes: &[u8], name: &str) -> Result<RgbaImage, String> {
     decode_limited(bytes, format).map(DynamicImage::into_rgba8)
 }
 
-/// An image file of a format, which may not be larger than files may be.
+/// Decodes an image file within the size and memory limits.
 pub(in crate::scene) fn decode_limited(
     bytes: &[u8],
     format: ImageFormat,
@@ -295,7 +296,7 @@ fn finish(
     texture_from_rgba(name, to.0, to.1, rgba, format, filter)
 }
 
-/// The size with its longer side at most `MAX_SIDE`, aspect kept.
+/// The size with a longer side of at most `MAX_SIDE`, aspect ratio kept.
 fn within_limit(width: u32, height: u32) -> (u32, u32) {
     let longest = width.max(height);
     if longest <= MAX_SIDE {

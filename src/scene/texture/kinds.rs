@@ -1,16 +1,16 @@
-//! Kinds of textures: devices have few arrays, and the layers of an array are of one kind.
+//! Kinds of textures: devices have few arrays, and the layers of an array share a kind.
 
 use std::collections::BTreeMap;
 
 use crate::scene::{Scene, Texture, TextureFormat};
 
-/// Kinds that keep their size, if there are no more.
+/// Maximum number of kinds that keep their size.
 pub const MAX_TEXTURE_KINDS: usize = 12;
 
-/// Edge of the textures that share an array because their own kinds are too rare for one, texels.
+/// Side of the shared arrays for textures of rare kinds [texels].
 pub const SHARED_EDGE: u32 = 512;
 
-/// Width, height, levels and format, which the layers of an array share.
+/// Width, height, levels and format shared by the layers of an array.
 pub type TextureKind = (u32, u32, u32, TextureFormat);
 
 impl Texture {
@@ -24,8 +24,8 @@ impl Texture {
     }
 }
 
-/// Whether a texture of each of these kinds keeps its size: all do, if there are few kinds, else those of the kinds with the most
-/// texels. Two arrays, for colours and for data, take the rest.
+/// Whether each texture keeps its size. If there are too many kinds, those with the most texels do;
+/// two arrays, for colours and for data, take the rest.
 pub fn keep_their_size(kinds: &[TextureKind]) -> Vec<bool> {
     let mut texels: BTreeMap<TextureKind, u64> = BTreeMap::new();
     for kind in kinds {
@@ -45,7 +45,7 @@ pub fn keep_their_size(kinds: &[TextureKind]) -> Vec<bool> {
     kinds.iter().map(|kind| kept.contains(kind)).collect()
 }
 
-/// Adds a warning about textures that lose their size.
+/// Adds a warning about textures that are resized.
 pub(in crate::scene) fn with_kinds_told(mut scene: Scene) -> Scene {
     let kinds: Vec<TextureKind> = scene.textures.iter().map(Texture::kind).collect();
     let keep = keep_their_size(&kinds);

@@ -1,5 +1,5 @@
-//! KTX2 files: the first level as RGBA8. Universal textures (ETC1S and UASTC) are transcoded; plain formats with a
-//! counterpart in DDS are read too.
+//! KTX2 files: the first level as RGBA8. Universal textures (ETC1S and UASTC) are transcoded; plain
+//! formats with a DDS counterpart are supported too.
 
 use std::ops::Range;
 
@@ -15,12 +15,12 @@ use super::decode::{MAX_FILE_BYTES, MAX_FILE_SIDE};
 #[cfg(test)]
 mod tests;
 
-/// Size of a block of ETC1S and UASTC, texels.
+/// Block size of ETC1S and UASTC [texels].
 const SIDE: u32 = 4;
-/// Size of a block of UASTC, bytes.
+/// Block size of UASTC [bytes].
 const UASTC_BYTES: usize = 16;
 
-/// Where a header has the offset and the length of keys and values.
+/// Position of the offset and length of the key-value data in the header.
 const KEYS: Range<usize> = 56..64;
 
 pub(super) fn is_ktx2(bytes: &[u8]) -> bool {
@@ -39,7 +39,8 @@ pub(super) fn pixels(bytes: &[u8]) -> Result<RgbaImage, String> {
         .ok_or_else(|| "its KTX2 data is shorter than its size says".into())
 }
 
-/// The header and the first level. [`ktx2::Reader`] reads more, and panics at some descriptors of damaged files.
+/// The header and the first level. [`ktx2::Reader`] parses more, and panics at some descriptors of
+/// damaged files.
 fn parse(bytes: &[u8]) -> Result<(Header, Level<'_>), String> {
     let (header, rest) = bytes
         .split_first_chunk()
@@ -87,7 +88,7 @@ fn universal(bytes: &[u8], header: &Header, level: &Level) -> Result<Vec<u8>, St
         format!("the KTX2 texture is damaged or of a kind that is not read ({error:?})")
     };
     if header.supercompression_scheme == Some(SupercompressionScheme::Zstandard) {
-        // The transcoder allocates the size that the file states.
+        // The transcoder allocates the declared size.
         let blocks = header.pixel_width.div_ceil(SIDE) as usize
             * header.pixel_height.div_ceil(SIDE) as usize;
         if level.uncompressed_byte_length != (blocks * UASTC_BYTES) as u64 {
@@ -97,7 +98,7 @@ fn universal(bytes: &[u8], header: &Header, level: &Level) -> Result<Vec<u8>, St
             );
         }
     }
-    // Keys and values are not needed, and the transcoder panics at damaged ones.
+    // Key-value data are not needed, and the transcoder panics at damaged ones.
     let mut bytes = bytes.to_vec();
     if let Some(place) = bytes.get_mut(KEYS) {
         place.fill(0);
@@ -148,7 +149,7 @@ fn plain(format: Format, header: &Header, level: &Level) -> Result<Vec<u8>, Stri
     Ok(rgba)
 }
 
-/// The same format in DDS, the bytes of a block and its side in texels.
+/// The DDS equivalent, the bytes of a block and its side in texels.
 fn layout(format: Format) -> Option<(ImageFormat, usize, u32)> {
     Some(match format {
         Format::R8_UNORM | Format::R8_SRGB => (ImageFormat::R8Unorm, 1, 1),

@@ -8,12 +8,12 @@ use rayon::prelude::*;
 use super::{Texture, TextureFormat, first_level_rgba};
 use crate::metrics::colour::srgb_to_linear;
 
-/// What a mip level must keep of the level above.
+/// Property that a mip level preserves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::scene) enum Filter {
     /// The mean of each channel.
     Plain,
-    /// The share of texels whose alpha is at or above the cutoff (0 to 1); colours are weighted by alpha.
+    /// Alpha coverage at the cutoff (0 to 1); colours are weighted by alpha.
     Masked(f32),
     /// Unit length after decoding.
     Normal,
@@ -22,7 +22,7 @@ pub(in crate::scene) enum Filter {
 static SRGB_TO_LINEAR: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|i| srgb_to_linear(i as f32 / 255.0)));
 
-/// sRGB bytes by linear value in steps of 1/16384, fine enough that bytes survive a round trip.
+/// sRGB byte by linear value in steps of 1/16384, fine enough for a lossless round trip of bytes.
 static LINEAR_TO_SRGB: LazyLock<Vec<u8>> = LazyLock::new(|| {
     let encode = |i: usize| {
         let l = i as f32 / 16384.0;
@@ -36,7 +36,8 @@ static LINEAR_TO_SRGB: LazyLock<Vec<u8>> = LazyLock::new(|| {
     (0..=16384).map(encode).collect()
 });
 
-/// A texture with its full mip chain from RGBA8 texels. Panics when their number is not width * height.
+/// A texture with its full mip chain from RGBA8 texels. Panics if their number is not width *
+/// height.
 pub(in crate::scene) fn texture_from_rgba(
     name: &str,
     width: u32,
@@ -79,7 +80,7 @@ pub(in crate::scene) fn texture_from_rgba(
     }
 }
 
-/// The mean of a texture, linear: of its last level.
+/// The linear mean of a texture, from its last level.
 pub(super) fn mean_color(texture: &Texture) -> Result<Vec4, String> {
     let level = texture.mips.len().saturating_sub(1);
     let size = |n: u32| (n >> level).max(1);
@@ -94,7 +95,7 @@ pub(super) fn mean_color(texture: &Texture) -> Result<Vec4, String> {
     Ok(texels.iter().sum::<Vec4>() / texels.len().max(1) as f32)
 }
 
-/// RGBA8 texels resampled to a smaller size by the same filter as the mips.
+/// RGBA8 texels reduced by the filter of the mips.
 pub(super) fn reduce(
     rgba: &[u8],
     from: (u32, u32),
@@ -105,7 +106,7 @@ pub(super) fn reduce(
     encode(&shrink(&decode(rgba, srgb), from, to, filter), srgb)
 }
 
-/// Linear texels of RGBA8 ones.
+/// Linear values of RGBA8 texels.
 pub(super) fn decode(rgba: &[u8], srgb: bool) -> Vec<Vec4> {
     let plain = |c: u8| f32::from(c) / 255.0;
     let color = |c: u8| {
@@ -135,7 +136,8 @@ fn encode(texels: &[Vec4], srgb: bool) -> Vec<u8> {
         .collect()
 }
 
-/// Each target texel is the mean over the source area that it covers, so that odd sizes lose no row.
+/// Each target texel is the mean over the source area that it covers, so that odd sizes lose no
+/// row.
 fn shrink(texels: &[Vec4], from: (u32, u32), to: (u32, u32), filter: Filter) -> Vec<Vec4> {
     let columns: Vec<Vec<(usize, f32)>> = (0..to.0).map(|x| taps(x, from.0, to.0)).collect();
     let row = |y: u32| -> Vec<Vec4> {
@@ -148,7 +150,7 @@ fn shrink(texels: &[Vec4], from: (u32, u32), to: (u32, u32), filter: Filter) -> 
     (0..to.1).into_par_iter().flat_map_iter(row).collect()
 }
 
-/// Source texels under a target texel along one axis, with weights that sum to 1.
+/// Source texels of a target texel along one axis, with weights that sum to 1.
 fn taps(target: u32, from: u32, to: u32) -> Vec<(usize, f32)> {
     let scale = f64::from(from) / f64::from(to);
     let (start, end) = (f64::from(target) * scale, f64::from(target + 1) * scale);
@@ -181,7 +183,7 @@ fn mean(
     }
     match filter {
         Filter::Plain => sum,
-        // The colour under transparent texels is arbitrary and must not bleed in.
+        // The colour of transparent texels is arbitrary and must not bleed in.
         Filter::Masked(_) if weight > 1e-4 => (weighted / weight).extend(sum.w),
         Filter::Masked(_) => sum,
         Filter::Normal => {
@@ -191,13 +193,13 @@ fn mean(
     }
 }
 
-/// Share of texels whose alpha, scaled and stored in a byte, is at or above the cutoff.
+/// Fraction of texels whose alpha, scaled and quantised to a byte, reaches the cutoff.
 fn alpha_coverage(texels: &[Vec4], scale: f32, cutoff: f32) -> f32 {
     let passes = |t: &&Vec4| (t.w * scale * 255.0 + 0.5).floor() >= (cutoff * 255.0).round();
     texels.iter().filter(passes).count() as f32 / texels.len() as f32
 }
 
-/// Scales alpha until as large a share of texels passes the cutoff as at level 0 (Castano 2010).
+/// Scales alpha to the coverage of level 0 (Castano 2010).
 fn with_coverage(texels: &[Vec4], cutoff: f32, coverage: f32) -> Vec<Vec4> {
     let (mut low, mut high) = (0.0f32, 8.0f32);
     for _ in 0..16 {
@@ -208,7 +210,7 @@ fn with_coverage(texels: &[Vec4], cutoff: f32, coverage: f32) -> Vec<Vec4> {
             high = middle
         }
     }
-    // Few texels have few shares to choose from: take the nearer one.
+    // Few texels allow few coverages: take the nearest one.
     let miss = |scale: f32| (alpha_coverage(texels, scale, cutoff) - coverage).abs();
     let scale = if miss(low) < miss(high) { low } else { high };
     texels

@@ -1,4 +1,4 @@
-//! Textures: which images the materials ask for, decoded in parallel, with mips that suit their use.
+//! Textures: requested by materials, decoded in parallel, with mips that suit their use.
 
 mod content;
 mod dds;
@@ -28,13 +28,13 @@ pub(super) use kinds::with_kinds_told;
 pub(crate) use kinds::{MAX_TEXTURE_KINDS, SHARED_EDGE, TextureKind, keep_their_size};
 pub(super) use mips::{Filter, texture_from_rgba};
 
-/// Where an image's bytes come from.
+/// Source of an image's bytes.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Source {
     File(PathBuf),
-    /// Bytes inside a model file, under a name for messages.
+    /// Embedded bytes with a name for messages.
     Bytes(String, Arc<Vec<u8>>),
-    /// Nothing to read, and why.
+    /// A missing file and the reason.
     Missing(String, String),
 }
 
@@ -47,12 +47,12 @@ impl Source {
     }
 }
 
-/// How an image, or two, become a texture.
+/// How one or two images become a texture.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Recipe {
-    /// sRGB colour; `mask` is an alpha cutoff in 1/255ths whose coverage the mips preserve.
+    /// sRGB colour; `mask` is an alpha cutoff in 1/255 whose coverage the mips preserve.
     Color { image: Source, mask: Option<u8> },
-    /// sRGB colour from one image (white without) and alpha from another.
+    /// sRGB colour from one image (white without it) and alpha from another.
     ColorAndMask {
         color: Option<Source>,
         alpha: Source,
@@ -62,9 +62,9 @@ pub(super) enum Recipe {
     Normal { image: Source },
     /// G = roughness, B = metallic in one image.
     MetallicRoughness { image: Source },
-    /// Glossiness in alpha, times a factor in 1/255ths; nothing of it is metal.
+    /// Glossiness in alpha, times a factor in 1/255; metallic is 0.
     Glossiness { image: Source, factor: u8 },
-    /// Roughness and metallic in grey images of their own (white without).
+    /// Roughness and metallic from separate grey images (white without them).
     RoughnessAndMetallic {
         roughness: Option<Source>,
         metallic: Option<Source>,
@@ -94,7 +94,7 @@ impl Recipe {
             })
     }
 
-    /// Of its first image.
+    /// The name of its first image.
     fn name(&self) -> String {
         match self {
             Recipe::Color { image, .. }
@@ -114,7 +114,7 @@ impl Recipe {
     }
 }
 
-/// Something to warn about, by kind.
+/// A warning with its kind.
 pub(super) struct Notice {
     what: String,
     name: String,
@@ -137,15 +137,15 @@ impl Notice {
     }
 }
 
-/// The textures that materials ask for, each recipe once.
+/// Requested textures, each recipe once.
 #[derive(Debug, Default)]
 pub(super) struct Requests {
-    /// Recipe and the first material that asked.
+    /// Recipe and the first material that requests it.
     recipes: IndexMap<Recipe, String>,
 }
 
 impl Requests {
-    /// The index that the recipe's texture will have.
+    /// The index of the recipe's future texture.
     pub fn ask(&mut self, recipe: Recipe, material: &str) -> u32 {
         let entry = self.recipes.entry(recipe);
         let index = entry.index();
@@ -153,12 +153,12 @@ impl Requests {
         index as u32
     }
 
-    /// Decodes everything. What cannot be decoded becomes a visible stand-in and a warning.
+    /// Decodes all textures. Failures become a visible placeholder and a warning.
     pub fn load(self, progress: Progress) -> Result<(Vec<Texture>, Vec<String>), SceneError> {
         self.each(progress, cook)
     }
 
-    /// The mean of each, linear, in place of the textures. What cannot be decoded is white, and there is a warning.
+    /// The linear mean of each texture instead. Failures are white and give a warning.
     pub fn means(self, progress: Progress) -> Result<(Vec<Vec4>, Vec<String>), SceneError> {
         self.each(progress, |recipe, material| {
             let mut warnings = Vec::new();
@@ -173,7 +173,7 @@ impl Requests {
         })
     }
 
-    /// What is made of each recipe, in parallel, and a warning for each kind of trouble.
+    /// Processes recipes in parallel and collects one warning per kind of problem.
     fn each<T: Send>(
         self,
         progress: Progress,
@@ -201,7 +201,7 @@ impl Requests {
     }
 }
 
-/// The texture, or the file and what is wrong with it: a decoder may panic on a damaged one.
+/// The texture, or the file and the error; decoders may panic on damaged files.
 fn decoded(recipe: &Recipe, warnings: &mut Vec<Notice>) -> Result<Texture, (String, String)> {
     let mut more = Vec::new();
     let texture = caught(|| decode::cook(recipe, &mut more));

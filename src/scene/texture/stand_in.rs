@@ -1,8 +1,8 @@
-//! What is shown for an image that cannot be: impossible to overlook.
+//! Placeholders for images that cannot be decoded, made impossible to overlook.
 
 use super::{Filter, Recipe, Texture, TextureFormat, texture_from_rgba};
 
-/// An 8x8 checkerboard: magenta and black for colours, opposed values for normals and roughness.
+/// An 8x8 checkerboard: magenta and black for colours, opposing values for normals and roughness.
 pub(super) fn checkerboard(recipe: &Recipe, name: &str) -> Texture {
     let (format, filter, dark, light) = match recipe {
         Recipe::Color { .. } | Recipe::ColorAndMask { .. } => (

@@ -1,27 +1,28 @@
-//! Mode 0: deltas between elements, stored byte position by byte position in blocks (appendix A of the extension).
+//! Mode 0: deltas between elements, stored in blocks, one byte position after another (appendix A
+//! of the extension).
 
 use super::{Stream, header};
 
-/// Most elements of a block.
+/// Maximum elements per block.
 const BLOCK: usize = 256;
-/// Elements of a group.
+/// Elements per group.
 const GROUP: usize = 16;
 
-/// Bits of a delta by the group's mode; 8 bits are stored as they are, fewer have a sentinel.
+/// Bits per delta by group mode; 8 bits are stored directly, fewer have a sentinel.
 const VERSION_0: [u32; 4] = [0, 2, 4, 8];
-/// The same in version 1, for control modes 0 and 1.
+/// The same for version 1, control modes 0 and 1.
 const VERSION_1: [[u32; 4]; 2] = [[0, 1, 2, 4], [1, 2, 4, 8]];
 
-/// How four bytes of an element follow from the element before.
+/// Prediction of four bytes from the previous element.
 #[derive(Clone, Copy)]
 enum Channel {
     Bytes,
     Words,
-    /// Exclusive or, stored with this rotation to the left.
+    /// Exclusive or, rotated left by this amount.
     Xor(u32),
 }
 
-/// The elements of a stream.
+/// Decodes the elements of a stream.
 pub(super) fn decode(data: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, String> {
     let version = header(data, &[0xa0, 0xa1])? & 1;
     let tail = if version == 0 {
@@ -41,7 +42,7 @@ pub(super) fn decode(data: &[u8], count: usize, stride: usize) -> Result<Vec<u8>
             .collect::<Result<_, _>>()?,
     };
 
-    // The vector grows with the bytes read: a large count alone must take no memory.
+    // The vector grows with the bytes read, so that a large declared count allocates nothing.
     let mut out = Vec::new();
     let mut deltas = vec![[0; BLOCK]; stride];
     let most = ((8192 / stride) & !(GROUP - 1)).min(BLOCK);
@@ -104,7 +105,7 @@ fn groups(stream: &mut Stream, deltas: &mut [u8], bits: [u32; 4]) -> Result<(), 
                 let sentinel = (1 << bits) - 1;
                 for (k, delta) in group.iter_mut().enumerate() {
                     let bit = k as u32 * bits;
-                    // Single bits begin at the lowest one, others at the highest.
+                    // Single bits start at the lowest bit, others at the highest.
                     let shift = if bits == 1 {
                         bit % 8
                     } else {

@@ -1,6 +1,7 @@
-//! Filters of decoded attributes (appendix B of the extension). Streams that break its rules give some numbers.
+//! Filters of decoded attributes (appendix B of the extension). Invalid streams give arbitrary
+//! numbers.
 
-/// Unit vectors, of four signed numbers of one or two bytes each.
+/// Octahedral unit vectors: four signed numbers of one or two bytes each.
 pub(super) fn octahedral(bytes: &mut [u8], stride: usize) {
     let decode = |[x, y, one, w]: [f32; 4], most: f32| {
         let (x, y) = (x / one, y / one);
@@ -28,7 +29,7 @@ pub(super) fn octahedral(bytes: &mut [u8], stride: usize) {
     }
 }
 
-/// Rotations, of the three components that are not the largest.
+/// Quaternions without their largest component.
 pub(super) fn quaternion(bytes: &mut [u8]) {
     words(bytes, |element| {
         let [x, y, z, one] = element.map(|w| w as i16);
@@ -41,17 +42,17 @@ pub(super) fn quaternion(bytes: &mut [u8]) {
     });
 }
 
-/// Floats, of 24 bits times a power of two with an exponent of 8 bits.
+/// Floats from a 24-bit mantissa and an 8-bit exponent.
 pub(super) fn exponential(bytes: &mut [u8]) {
     for number in bytes.as_chunks_mut::<4>().0 {
         let packed = i32::from_le_bytes(*number);
         let (exponent, mantissa) = (packed >> 24, packed << 8 >> 8);
-        // Both are exact in 64 bits, and so is their product.
+        // Both factors and their product are exact in 64 bits.
         *number = ((2f64.powi(exponent) * f64::from(mantissa)) as f32).to_le_bytes();
     }
 }
 
-/// Colours of luma, two chroma, and alpha below a bit that tells the precision.
+/// Colours from luma, two chroma channels and alpha; the top bit of alpha marks the precision.
 pub(super) fn color(bytes: &mut [u8], stride: usize) {
     let decode = |[y, orange, green, alpha]: [i32; 4], most: f32| {
         let bits = 32 - alpha.leading_zeros();
@@ -93,7 +94,7 @@ pub(super) fn color(bytes: &mut [u8], stride: usize) {
     }
 }
 
-/// Changes each four numbers of two bytes.
+/// Maps each group of four 16-bit numbers.
 fn words(bytes: &mut [u8], change: impl Fn([u16; 4]) -> [u16; 4]) {
     for element in bytes.as_chunks_mut::<8>().0 {
         let [a, b, c, d] = change(std::array::from_fn(|i| {

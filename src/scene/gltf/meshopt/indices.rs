@@ -13,11 +13,11 @@ pub(super) fn bytes(indices: &[u32], stride: usize) -> Vec<u8> {
     }
 }
 
-/// Mode 2: deltas to one of two indices.
+/// Mode 2: deltas to one of two previous indices.
 pub(super) fn sequence(data: &[u8], count: usize) -> Result<Vec<u32>, String> {
     header(data, &[0xd1])?;
     let mut stream = Stream::body(data, 4)?;
-    // An index takes a byte at least.
+    // An index takes at least one byte.
     let mut out = Vec::with_capacity(count.min(stream.0.len()));
     let mut last = [0u32; 2];
     for _ in 0..count {
@@ -30,7 +30,7 @@ pub(super) fn sequence(data: &[u8], count: usize) -> Result<Vec<u32>, String> {
     Ok(out)
 }
 
-/// Mode 1: triangles by edges and vertices that were seen just before.
+/// Mode 1: triangles from recent edges and vertices.
 pub(super) fn triangles(data: &[u8], count: usize) -> Result<Vec<u32>, String> {
     header(data, &[0xe1])?;
     let mut stream = Stream::body(data, 16)?;
@@ -55,7 +55,7 @@ fn unzigzag(value: u32) -> u32 {
     (value >> 1) ^ (value & 1).wrapping_neg()
 }
 
-/// The last sixteen of a kind.
+/// The last sixteen items.
 struct Recent<T> {
     items: [T; 16],
     count: usize,
@@ -74,7 +74,7 @@ impl<T: Copy> Recent<T> {
         self.count += 1;
     }
 
-    /// The latest has index 0.
+    /// The item at `index`, counted back from the latest.
     fn get(&self, index: u8) -> Result<T, String> {
         let place = self
             .count
@@ -88,7 +88,7 @@ impl<T: Copy> Recent<T> {
 
 struct State<'a> {
     stream: Stream<'a>,
-    /// The next index that was not seen.
+    /// The next new index.
     next: u32,
     /// The last index that was stored as a delta.
     last: u32,
@@ -117,7 +117,7 @@ impl State<'_> {
         }
     }
 
-    /// A triangle with a recent edge.
+    /// A triangle that shares a recent edge.
     fn beside_edge(&mut self, edge: u8, third: u8) -> Result<[u32; 3], String> {
         let (a, b) = self.edges.get(edge)?;
         let c = match third {
@@ -138,7 +138,8 @@ impl State<'_> {
         Ok([a, b, c])
     }
 
-    /// A triangle by the source of each corner: the next index (0), a recent one (1 to 14) or a stored one (15).
+    /// A triangle from the source of each corner: the next index (0), a recent one (1 to 14) or a
+    /// stored one (15).
     fn free(&mut self, corners: [u8; 3]) -> Result<[u32; 3], String> {
         let mut triangle = [0; 3];
         for (index, corner) in triangle.iter_mut().zip(corners) {

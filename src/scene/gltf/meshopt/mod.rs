@@ -1,5 +1,5 @@
-//! Compressed buffer views: EXT_meshopt_compression and KHR_meshopt_compression. Both have the same bit streams; the
-//! second adds version 1 of attributes and the filter for colours.
+//! Compressed buffer views: EXT_meshopt_compression and KHR_meshopt_compression. Both use the same
+//! bit streams; the second adds version 1 of attributes and the colour filter.
 
 mod attributes;
 mod filters;
@@ -47,7 +47,7 @@ enum Filter {
 }
 
 impl Compressed {
-    /// The compression of a view, if it has one.
+    /// The compression of a view, if any.
     pub fn of(view: &buffer::View) -> Option<Result<Compressed, String>> {
         let fields = extension(view.extensions())?;
         Some(parse(fields).map_err(|problem| format!("buffer view {}: {problem}", view.index())))
@@ -58,7 +58,7 @@ impl Compressed {
         self.layout.count.saturating_mul(self.layout.stride)
     }
 
-    /// The view's uncompressed bytes.
+    /// Decodes the view's bytes.
     pub fn decode(&self, stream: &[u8]) -> Result<Vec<u8>, String> {
         let Layout {
             count,
@@ -82,7 +82,7 @@ impl Compressed {
     }
 }
 
-/// True for a buffer that stands for decoded data and need not be read.
+/// Whether a buffer only stands for decoded data and need not be read.
 pub(super) fn is_fallback(buffer: &buffer::Buffer) -> bool {
     extension(buffer.extensions()).and_then(|e| e.get("fallback")) == Some(&Value::Bool(true))
 }
@@ -161,7 +161,7 @@ impl Layout {
     }
 }
 
-/// Compressed bytes that are read from the front.
+/// Compressed bytes, read from the front.
 struct Stream<'a>(&'a [u8]);
 
 const SHORT: &str = "its compressed data ends too early: it is damaged";
@@ -208,7 +208,7 @@ impl<'a> Stream<'a> {
     }
 }
 
-/// Fails unless the stream begins with one of the header bytes.
+/// Checks that the stream begins with one of the header bytes, and returns it.
 fn header(stream: &[u8], known: &[u8]) -> Result<u8, String> {
     let first = *stream.first().ok_or(SHORT)?;
     if known.contains(&first) {

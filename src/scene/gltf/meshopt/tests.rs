@@ -1,4 +1,4 @@
-//! Streams that another program wrote: the encoder of meshoptimizer 1.3 (npm), from values that each test knows.
+//! Streams from the encoder of meshoptimizer 1.3 (npm), compared with known values.
 
 use super::*;
 use serde_json::json;
@@ -171,7 +171,7 @@ fn triangles_and_indices_are_exact() {
     );
 }
 
-/// Triangles with their lowest index first: encoders turn them, and keep their winding.
+/// Triangles rotated to their lowest index: encoders may rotate them but keep the winding.
 fn turned(indices: &[u32]) -> Vec<[u32; 3]> {
     let turn = |&[a, b, c]: &[u32; 3]| match a.min(b).min(c) {
         low if low == a => [a, b, c],
@@ -203,7 +203,8 @@ fn unit_vectors_and_rotations() {
     );
 
     let half = std::f32::consts::FRAC_1_SQRT_2;
-    // The largest component is positive: a rotation and its negative are the same.
+    // The largest component is positive, because a quaternion and its negative are the same
+    // rotation.
     let rotations = [
         0., 0., 0., 1., 1., 0., 0., 0., 0., half, 0., half, 0.5, 0.5, 0.5, 0.5, 0.6, 0., 0.8, 0.,
         0., 0.8, 0., -0.6,
@@ -288,7 +289,7 @@ fn damaged_streams_are_refused() {
                 }
             }
         }
-        // A count that no memory holds ends where the bytes do.
+        // An impossible count ends at the last byte.
         for count in [count * 3, 3 << 40, usize::MAX / 512 / 3 * 3] {
             assert!(
                 compressed(mode, "NONE", stride, count)

@@ -1,13 +1,13 @@
-//! Points in the plane, in 64 bits: products of coordinates of 32 bits are exact.
+//! Planar points in 64 bits, in which products of 32-bit coordinates are exact.
 
-/// A corner in the plane.
+/// A projected corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Point {
     pub x: f64,
     pub y: f64,
 }
 
-/// Where a point is, seen from a triangle.
+/// Position of a point relative to a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Inside {
     No,
@@ -18,9 +18,9 @@ pub(super) enum Inside {
     Corner(usize),
 }
 
-/// The polygon turning counter-clockwise in the plane of two axes in which it is largest, where coordinates stay exact,
-/// and then in its own plane (Newell), in which bent polygons cross themselves less. None where it has no area or is not
-/// finite.
+/// Projections with counter-clockwise winding. The first drops the axis of the largest area, which
+/// keeps coordinates exact. The second is the polygon's own plane (Newell), in which bent polygons
+/// intersect themselves less. `None` if the area is zero or not finite.
 pub(super) fn project(polygon: &[[f32; 3]]) -> Option<impl Iterator<Item = Vec<Point>>> {
     let normal = newell(polygon);
     let size = normal.map(f64::abs);
@@ -36,7 +36,7 @@ pub(super) fn project(polygon: &[[f32; 3]]) -> Option<impl Iterator<Item = Vec<P
         x: f64::from(p[right]),
         y: f64::from(p[up]),
     };
-    // Moves points along the normal to the plane of the two axes. Such a shear keeps crossings.
+    // A shear along the normal onto the plane of the two axes preserves crossings.
     let slope = [right, up].map(|k| normal[k] / normal[axis]);
     let own = move |p: &[f32; 3]| {
         let (Point { x, y }, depth) = (point(p), f64::from(p[axis]));
@@ -46,7 +46,7 @@ pub(super) fn project(polygon: &[[f32; 3]]) -> Option<impl Iterator<Item = Vec<P
         }
     };
     let exact = polygon.iter().map(point).collect();
-    // It is the same plane if the normal is along the axis.
+    // Both planes are equal if the normal is along the axis.
     let other = (slope != [0.0; 2]).then_some(own);
     Some(
         std::iter::once(exact).chain(
@@ -62,7 +62,7 @@ fn newell(polygon: &[[f32; 3]]) -> [f64; 3] {
     let Some(first) = polygon.first() else {
         return [0.0; 3];
     };
-    // From a corner of its own: far from the origin the sum would lose its digits.
+    // Relative to a corner, because the sum would lose precision far from the origin.
     let from = |p: &[f32; 3]| [0, 1, 2].map(|k| f64::from(p[k]) - f64::from(first[k]));
     let mut sum = [0.0; 3];
     for (i, p) in polygon.iter().enumerate() {
@@ -75,7 +75,7 @@ fn newell(polygon: &[[f32; 3]]) -> [f64; 3] {
     sum
 }
 
-/// Whether three successive corners, or the first with two others, have an area: false for points and lines.
+/// Whether any successive corners span an area: false for points and lines.
 pub(super) fn has_area(polygon: &[[f32; 3]]) -> bool {
     let mut triangles = polygon
         .windows(2)
@@ -83,7 +83,7 @@ pub(super) fn has_area(polygon: &[[f32; 3]]) -> bool {
     triangles.any(|triangle| newell(&triangle).iter().any(|a| *a != 0.0))
 }
 
-/// Twice the area of a polygon that turns left.
+/// Twice the signed area, positive if counter-clockwise.
 pub(super) fn area(points: &[Point]) -> f64 {
     let first = points.first().copied().unwrap_or(Point { x: 0.0, y: 0.0 });
     points
@@ -92,7 +92,7 @@ pub(super) fn area(points: &[Point]) -> f64 {
         .sum()
 }
 
-/// Whether every corner turns left, and all together once around.
+/// Whether every corner turns left and the polygon winds once.
 pub(super) fn is_convex(points: &[Point]) -> bool {
     let count = points.len();
     let at = |i: usize| points[i % count];
@@ -101,7 +101,7 @@ pub(super) fn is_convex(points: &[Point]) -> bool {
     turns_left && (0..count).filter(|i| rises(*i) != rises(i + 1)).count() <= 2
 }
 
-/// Twice the area of a triangle, above 0 where it turns left.
+/// Twice the signed area of a triangle, positive if counter-clockwise.
 pub(super) fn cross(a: Point, b: Point, c: Point) -> f64 {
     (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x)
 }
@@ -119,7 +119,7 @@ pub(super) fn inside(triangle: [Point; 3], p: Point) -> Inside {
     }
 }
 
-/// Whether an edge from a corner of the triangle towards `to` begins inside of the triangle.
+/// Whether an edge from a corner of the triangle towards `to` starts inside it.
 pub(super) fn enters(triangle: [Point; 3], corner: usize, to: Point) -> bool {
     let [from, next, previous] = [0, 1, 2].map(|k| triangle[(corner + k) % 3]);
     cross(from, next, to) > 0.0 && cross(from, to, previous) > 0.0

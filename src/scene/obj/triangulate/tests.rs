@@ -19,7 +19,7 @@ fn area_of(points: &[[f32; 3]], corners: &[u32]) -> f64 {
         * 0.5
 }
 
-/// Cuts a polygon and checks that its triangles turn left and have its area.
+/// Triangulates a polygon and checks winding and area.
 #[track_caller]
 fn cut(points: &[[f32; 3]]) -> Cut {
     let mut triangles = Vec::new();
@@ -138,7 +138,7 @@ fn random_polygons_are_covered_once() {
 
 #[test]
 fn corners_on_edges_and_holes_behind_a_bridge_are_right() {
-    // A square with a corner in the middle of each side: no triangle may lack area.
+    // A square with midpoints on its sides: no triangle may be degenerate.
     cut(&polygon(&[
         (0., 0.),
         (1., 0.),
@@ -166,7 +166,7 @@ fn corners_on_edges_and_holes_behind_a_bridge_are_right() {
         .chain(outer)
         .collect();
     cut(&polygon(&two));
-    // Doubled corners and an edge that returns.
+    // Duplicate corners and a returning edge.
     cut(&polygon(&[
         (0., 0.),
         (0., 0.),
@@ -178,7 +178,7 @@ fn corners_on_edges_and_holes_behind_a_bridge_are_right() {
         (1., 1.),
         (0., 2.),
     ]));
-    // Two squares that touch in a corner.
+    // Two squares that share a corner.
     cut(&polygon(&[
         (0., 0.),
         (1., 0.),
@@ -193,7 +193,7 @@ fn corners_on_edges_and_holes_behind_a_bridge_are_right() {
 
 #[test]
 fn bent_polygons_are_cut_in_their_own_plane() {
-    // Along their largest axis the edges of these cross.
+    // The projected edges of these quads cross.
     for quad in [
         [
             [0.0, 0.0, 0.0],

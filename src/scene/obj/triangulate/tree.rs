@@ -1,15 +1,15 @@
-//! Corners by place: a k-d tree of those that may block an ear.
+//! A k-d tree of corners that may block an ear.
 
 use super::plane::{Point, cross};
 
-/// Corners of a leaf.
+/// Corners per leaf.
 const LEAF: usize = 8;
 
 pub(super) struct Tree {
-    /// A node's children are at twice its number and one more; the root is 1.
+    /// The children of node n are 2n and 2n + 1; the root is 1.
     nodes: Vec<Node>,
     corners: Vec<u32>,
-    /// The leaf of each corner of the polygon; 0 for those that are not in the tree.
+    /// The leaf of each corner; 0 if it is not in the tree.
     leaf_of: Vec<u32>,
 }
 
@@ -19,7 +19,7 @@ struct Node {
     high: Point,
     begin: u32,
     end: u32,
-    /// Its corners that have not been taken out.
+    /// Corners not yet removed.
     live: u32,
 }
 
@@ -92,7 +92,7 @@ impl Tree {
         self.build(points, 2 * node + 1, begin + middle, end);
     }
 
-    /// Takes a corner out, if it is in the tree.
+    /// Removes a corner, if present.
     pub fn remove(&mut self, corner: u32) {
         let mut node = std::mem::take(&mut self.leaf_of[corner as usize]) as usize;
         while node > 0 {
@@ -101,7 +101,8 @@ impl Tree {
         }
     }
 
-    /// A corner in or near a triangle that fits, and how many corners and nodes were looked at.
+    /// A corner in or near a triangle that satisfies `fits`, and the number of corners and nodes
+    /// visited.
     pub fn find(&self, triangle: [Point; 3], fits: impl Fn(u32) -> bool) -> (Option<u32>, usize) {
         let mut tests = 0;
         let mut open = vec![1];
@@ -127,7 +128,7 @@ impl Tree {
 }
 
 impl Node {
-    /// Whether an edge of the triangle, or of the node, divides them.
+    /// Whether an edge of the triangle or the node separates them.
     fn is_outside(&self, triangle: [Point; 3]) -> bool {
         let (low, high) = (self.low, self.high);
         let beyond = |is: fn(Point, Point) -> bool, of: Point| triangle.iter().all(|p| is(*p, of));
@@ -140,7 +141,7 @@ impl Node {
         }
         (0..3).any(|i| {
             let (a, b) = (triangle[i], triangle[(i + 1) % 3]);
-            // The corner of the node that is farthest to the left of the edge.
+            // The node's corner farthest to the left of the edge.
             let x = if b.y > a.y { low.x } else { high.x };
             let y = if b.x > a.x { high.y } else { low.y };
             cross(a, b, Point { x, y }) < 0.0

@@ -186,7 +186,7 @@ fn keys_and_values_are_not_read() {
     assert_eq!(texels(&bytes), texels(UASTC));
 }
 
-/// Readers of other people may panic at damaged files; none of these changes makes one.
+/// Third-party decoders may panic at damaged files; none of these changes triggers a panic.
 #[test]
 fn damaged_files_are_refused_or_read() {
     for bytes in [ETC1S, ETC1S_ALPHA, UASTC, UASTC_ZSTD] {
