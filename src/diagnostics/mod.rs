@@ -39,7 +39,7 @@ pub struct Diagnostic {
     pub(crate) severity: Severity,
     /// Position of the finding.
     pub place: Place,
-    /// The problem and what was expected.
+    /// The problem and the expected input.
     pub message: String,
     /// A remedy, for example the nearest known name.
     pub help: Option<String>,
@@ -163,7 +163,7 @@ pub struct At {
     pub offset: u32,
 }
 
-/// The files read so far, with their text.
+/// Files read by a parser, with their text.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
     files: Vec<(PathBuf, String)>,

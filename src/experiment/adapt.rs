@@ -23,11 +23,11 @@ impl Experiment {
         )
     }
 
-    /// Changes sky and lights of the scene as the experiment says. Doing it twice changes nothing more.
+    /// Applies the experiment's changes to the sky and lights of the scene; idempotent.
     ///
     /// # Errors
-    /// Lights that the scene does not have, and fields that a light of that kind does not have, with their places; a picture
-    /// of the sky that cannot be read or is not there.
+    /// Unknown lights, invalid fields for a kind of light, with positions; an unreadable
+    /// environment map.
     pub fn adapt_scene(&self, scene: &mut Scene) -> Result<(), ExperimentError> {
         let mut errors = Vec::new();
         for (name, change) in &self.lights {

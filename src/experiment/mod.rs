@@ -1,5 +1,5 @@
-//! Experiments: graph, scene, camera, size, time, changes to the light, and the parameter values that differ from the
-//! defaults.
+//! Experiments: graph, scene, camera, size, time, lighting changes, and the parameter values that
+//! differ from the defaults.
 
 mod adapt;
 mod fields;
@@ -215,10 +215,10 @@ impl Experiment {
         ));
     }
 
-    /// The values of all parameters: `defaults`, then what the experiment sets.
+    /// The values of all parameters: `defaults` overridden by the experiment.
     ///
     /// # Errors
-    /// Unknown names and wrong values, all of them, with their places.
+    /// All unknown names and invalid values, with positions.
     pub fn params_over(&self, defaults: &Params) -> Result<Params, ExperimentError> {
         let mut params = defaults.clone();
         let mut errors = Vec::new();

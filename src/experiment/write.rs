@@ -10,14 +10,14 @@ use crate::graph::param::Params;
 use crate::scene::Scene;
 use std::path::{Component, Path, PathBuf};
 
-/// Writes an experiment to `path`: graph, scene, camera, size, what was given of time, sky, its picture and lights, and the
-/// parameters that differ from `defaults`. The file is read back before it takes its place. A file that is replaced is
-/// edited in place: comments stay, lines that say the same stay, values that changed are replaced where they stand, and
-/// those that became defaults go with their lines.
+/// Writes an experiment to `path`: graph, scene, camera, size, explicit time and lighting, and the
+/// parameters that differ from `defaults`. The text is read back before the file is replaced. An
+/// existing file is edited in place: comments and unchanged lines stay, changed values are
+/// replaced, and values that became defaults are removed with their lines.
 ///
 /// # Errors
-/// A file that exists (without `overwrite`), unknown parameters, values that cannot be read back, no permission; the
-/// old file is untouched then.
+/// An existing file (without `overwrite`), unknown parameters, values that cannot be read back, no
+/// permission. The old file is unchanged then.
 pub fn write(
     experiment: &Experiment,
     defaults: &Params,
@@ -62,8 +62,8 @@ pub fn write(
     written.map_err(|e| if e.is_there() { exists(path) } else { e.into() })
 }
 
-/// The text of an experiment that depends on no defaults: every parameter, the camera, the sky and the lights are
-/// written out. It is for the file `path`, which decides how a scene file is named.
+/// The text of an experiment that does not depend on defaults: every parameter, the camera, the sky
+/// and the lights are written. The file `path` determines how a scene file is named.
 ///
 /// # Errors
 /// Unknown parameters; values that cannot be read back.

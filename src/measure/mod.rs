@@ -88,14 +88,16 @@ pub struct Measured {
     pub reference: Option<Vec<u8>>,
 }
 
-/// Measures an experiment on its scene (with the experiment's light, see [`Experiment::adapted`]). The frames that are
-/// timed compute what the picture needs and no more; the parts that are scored come from frames of their own, because
-/// writing them costs time, unless it is the linear picture alone, which is made for the display anyway. Every pass runs in
-/// every frame.
-/// The parts are scored against the first reference, and the total against the others too: (bounces, reference).
+/// Measures an experiment on its scene (with the experiment's lighting, see
+/// [`Experiment::adapted`]). Timed frames execute every pass that the picture needs, and nothing
+/// else. Scored components come from separate frames, because writing them costs time. The linear
+/// picture alone is an exception, because the display needs it anyway.
+///
+/// The components are scored against the first reference, and the total against the others too:
+/// (bounces, reference).
 ///
 /// # Errors
-/// Everything that can be wrong with the experiment; the device was lost; a reference of another size.
+/// An invalid experiment; a lost device; a reference of another size.
 pub fn measure(
     lab: &Lab,
     warm: &mut Warm,

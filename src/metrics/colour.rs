@@ -77,7 +77,8 @@ pub(crate) fn from_ycxcz([y, cx, cz]: [f32; 3]) -> [f32; 3] {
     )
 }
 
-/// CIE L\*a\*b\* with the Hunt effect: chroma fades with lightness (Andersson et al. 2020, section 4.1.2).
+/// CIE L\*a\*b\* with the Hunt effect: chroma decreases with lightness (Andersson et al. 2020,
+/// section 4.1.2).
 pub(crate) fn hunt_lab(rgb: [f32; 3]) -> [f32; 3] {
     const DELTA: f32 = 6.0 / 29.0;
     let f = |t: f32| {

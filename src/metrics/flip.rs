@@ -1,9 +1,9 @@
 //! FLIP: the difference that an observer sees when two pictures alternate on a display.
 //!
-//! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild: *FLIP: A Difference Evaluator for Alternating Images*,
-//! HPG 2020. Filters are separated as in NVIDIA's evaluator, whose means this code meets within 0.001
-//! (`tests/metrics.rs`). Written here because the evaluator's binding takes 8-bit pictures only, and HDR-FLIP needs
-//! finer ones.
+//! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild: *FLIP: A Difference Evaluator
+//! for Alternating Images*, HPG 2020. Filters are separated as in NVIDIA's evaluator; means agree
+//! with it within 0.001 (`tests/metrics.rs`). Reimplemented, because the evaluator's binding only
+//! takes 8-bit pictures, and HDR-FLIP needs higher precision.
 
 use super::colour::{from_ycxcz, hunt_lab, ycxcz};
 use rayon::prelude::*;
@@ -130,7 +130,8 @@ fn filtered_colour(luminance: &Plane, red_green: &Plane, blue_yellow: &Plane) ->
         .collect()
 }
 
-/// Strength of edges (first derivatives of a Gaussian) and points (second derivatives) around every pixel.
+/// Strength of edges (first derivatives of a Gaussian) and points (second derivatives) at every
+/// pixel.
 fn features(grey: &Plane) -> Vec<[f32; 2]> {
     let deviation = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
     let radius = (3.0 * deviation).ceil() as i32;

@@ -1,12 +1,13 @@
-//! HDR-FLIP: FLIP of linear radiance, at every exposure at which the reference can be looked at.
+//! HDR-FLIP: FLIP of linear radiance over the range of useful exposures of the reference.
 //!
-//! Andersson, Nilsson, Shirley, Akenine-Möller: *Visualizing Errors in Rendered High Dynamic Range Images*, Eurographics
-//! Short Papers 2021.
+//! Andersson, Nilsson, Shirley, Akenine-Möller: *Visualizing Errors in Rendered High Dynamic Range
+//! Images*, Eurographics Short Papers 2021.
 
 use super::colour::luminance;
 use super::flip::flip;
 
-/// The filmic curve of the evaluator, (a c^2 + b c) / (d c^2 + e c + f): Narkowicz 2015 with its exposure of 0.6.
+/// The evaluator's filmic curve, (a c^2 + b c) / (d c^2 + e c + f): Narkowicz 2015 with an exposure
+/// of 0.6.
 const ACES: [f64; 5] = [
     0.6 * 0.6 * 2.51,
     0.6 * 0.03,

@@ -23,12 +23,13 @@ pub struct MapFile {
     pub scale: String,
 }
 
-/// The maps of a comparison: FLIP and HDR-FLIP in the colours of NVIDIA's evaluator (magma), the relative squared error
-/// on a logarithmic scale and the structure error in the same colours, the difference of luminance from blue (too dark)
-/// over white to red (too bright), and all five as the channels of an EXR.
+/// The error maps of a comparison. FLIP and HDR-FLIP use the colours of NVIDIA's evaluator (magma),
+/// as do the relative squared error on a logarithmic scale and the structure error. The difference
+/// of luminance runs from blue (too dark) over white to red (too bright). An EXR has all five as
+/// channels.
 ///
 /// # Errors
-/// A size that PNG or EXR does not have.
+/// A size that PNG or EXR does not support.
 pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
     let pairs = || compared.test.rgb.iter().zip(&compared.reference.rgb);
     let relative: Vec<f32> = pairs()

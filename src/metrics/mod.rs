@@ -116,11 +116,10 @@ impl Kind {
     }
 }
 
-/// How far a picture of radiance is from a reference, over the whole frame.
+/// Errors of a radiance picture against a reference, over the whole frame.
 ///
 /// # Errors
-/// Pictures of different sizes, without pixels, of more than [`MAX_PIXELS`], or without one pixel that is a number in
-/// both.
+/// Different or empty sizes; more than [`MAX_PIXELS`]; no pixel that is finite in both.
 pub fn scores(test: &Linear, reference: &Linear) -> Result<Scores, MetricError> {
     let compared = Compared::new(test, reference)?;
     compared.scores(None).ok_or_else(no_number)
@@ -146,7 +145,7 @@ pub struct Compared<'a> {
 }
 
 impl<'a> Compared<'a> {
-    /// Compares; both are what the reference's kind says.
+    /// Prepares a comparison; both pictures are interpreted as the reference's kind.
     ///
     /// # Errors
     /// Pictures of different sizes, without pixels, or of more than [`MAX_PIXELS`].

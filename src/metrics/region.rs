@@ -35,13 +35,14 @@ impl Region {
     }
 }
 
-/// The regions that follow from a reference's parts; those without a pixel, or whose parts are missing, are left out.
+/// The regions derived from a reference's components. Empty regions and those with missing
+/// components are omitted.
 ///
 /// | Region | Pixels of the reference |
 /// |---|---|
 /// | `dark` | luminance of `total` at most 0.01 of its mean: behind walls, in deep shadow |
 /// | `bright` | luminance of `total` at least 4 times its mean |
-/// | `indirect only` | luminance of direct light at most 0.01 of its mean, but `total` not dark: shadow lit by bounced light |
+/// | `indirect only` | luminance of direct light at most 0.01 of its mean, but `total` not dark |
 /// | `concave corners` | openness below 0.5 |
 /// | `open` | openness at least 0.9 |
 pub fn regions(reference: &BTreeMap<String, Linear>) -> Vec<Region> {

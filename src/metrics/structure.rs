@@ -1,18 +1,20 @@
-//! The structure error: edges in the light that the reference does not have, or has elsewhere.
+//! The structure error: edges in the lighting that the reference does not have, or has elsewhere.
 //!
-//! Both pictures are taken as logarithms of luminance, whose differences between neighbours are ratios: albedo textures,
-//! which both pictures have, and a constant factor go out of them. What is left is the slope of log(picture / reference).
+//! Both pictures are converted to log luminance, in which differences between neighbours are
+//! ratios. Albedo textures, common to both pictures, and a constant factor cancel. The remainder is
+//! the slope of log(picture / reference).
 
 use super::colour::luminance;
 use super::{Linear, MetricError, check, dark, is_finite};
 use rayon::prelude::*;
 
-/// Side of the blocks whose mean luminance is compared [pixels]: four pixels halve the noise.
+/// Side of the blocks with averaged luminance [pixels]: four pixels halve the noise.
 const BLOCK: usize = 2;
 
-/// A difference of this size, natural log units, counts half (a step of 10 %), larger ones nearly in full, smaller ones
-/// with their square. The mean of the differences as they are would be the total variation, to which a ramp over many
-/// blocks is as bad as the edge of the same height, and which adds up faint noise over the whole frame.
+/// Difference with weight one half [natural log units], a step of 10 %. Larger differences count
+/// nearly fully, smaller ones quadratically. The plain mean would be the total variation. It rates
+/// a ramp over many blocks like an edge of the same height, and accumulates faint noise over the
+/// frame.
 const HALF: f64 = 0.1;
 
 /// Error of each pair of neighbouring blocks [natural log units]; NaN if a block has no finite

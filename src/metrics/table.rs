@@ -59,7 +59,7 @@ pub struct OfNoise {
     pub none: f64,
 }
 
-/// Key of the metric whose noise represents the noise of a picture.
+/// Key of the metric that represents the noise of a picture.
 pub const RELMSE: &str = "relmse";
 
 /// All metrics in display order. `over_occlusion` does not rank two pictures, because it averages

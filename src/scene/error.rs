@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 /// An error that ends the opening or writing of a scene.
 #[derive(Debug, thiserror::Error)]
-#[expect(missing_docs, reason = "fields are what the texts above them show")]
+#[expect(missing_docs, reason = "the messages name the fields")]
 pub enum SceneError {
     /// The name is neither a built-in scene nor a file.
     #[error("no scene '{spec}': {hint}")]

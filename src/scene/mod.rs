@@ -1,7 +1,8 @@
-//! The scene: triangles, materials, textures, lights, animation and cameras, all in main memory.
+//! The scene: triangles, materials, textures, lights, animation and cameras in main memory.
 //!
-//! Knows no graphics interface. World units are metres, y is up, the frame is right-handed, front faces
-//! are counter-clockwise, and colours are linear RGB (only base-colour and emission images are sRGB).
+//! Independent of the graphics API. World units are metres, y is up, the frame is right-handed,
+//! front faces are counter-clockwise, and colours are linear RGB. Only base-colour and emission
+//! images are sRGB.
 
 pub mod builtin;
 mod clips;
@@ -66,7 +67,7 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// Moving frames; a parent comes before its children.
     pub movers: Vec<Mover>,
-    /// Meshes whose vertices move; at most one deformer per mesh.
+    /// Deformers, at most one per mesh.
     pub deformers: Vec<Deformer>,
     /// Punctual lights.
     pub lights: Vec<Light>,
@@ -91,7 +92,8 @@ pub struct Vertex {
     pub position: [f32; 3],
     /// Unit length.
     pub normal: [f32; 3],
-    /// Unit length; w is the sign of the bitangent `cross(normal, tangent) * w`, which points up in the normal map.
+    /// Unit length; w is the sign of the bitangent `cross(normal, tangent) * w`, which points up in
+    /// the normal map.
     pub tangent: [f32; 4],
     /// Texture coordinates; v grows downwards.
     pub uv: [f32; 2],
@@ -274,7 +276,8 @@ pub enum TextureFormat {
 }
 
 impl TextureFormat {
-    /// Edge of a block in texels and its size in bytes: (1, 4) for RGBA8, (4, 8) or (4, 16) for BCn.
+    /// Side of a block in texels and its size in bytes: (1, 4) for RGBA8, (4, 8) or (4, 16) for
+    /// BCn.
     pub fn block(self) -> (u32, usize) {
         use TextureFormat::*;
         match self {
@@ -333,7 +336,8 @@ pub struct Light {
     pub name: String,
     /// Emission pattern.
     pub kind: LightKind,
-    /// Irradiance on a facing surface (W/m^2) for a directional light, radiant intensity (W/sr) otherwise.
+    /// Irradiance on a facing surface [W/m^2] for a directional light, radiant intensity [W/sr]
+    /// otherwise.
     pub color: Vec3,
     /// World [m]; ignored for a directional light.
     pub position: Vec3,

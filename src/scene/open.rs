@@ -19,13 +19,14 @@ use super::{Material, Scene, SceneError, builtin, defaults, fbx, file, gltf, obj
 const ASK: Duration = Duration::from_millis(20);
 
 impl Scene {
-    /// Opens a built-in scene by name, a scene file (.ron) or a model (.obj, .gltf, .glb, .fbx). A path that may not be UTF-8 is
-    /// given as [`crate::files::spec_of`] writes it.
+    /// Opens a built-in scene, a scene file (.ron) or a model file by name. A path that may not be
+    /// UTF-8 is escaped by [`crate::files::spec_of`].
     ///
-    /// A model without lights gets a sun and a sky, one with lights none. Its first camera becomes the camera `default`;
-    /// a model without cameras gets one. `progress` is called with
-    /// what is being done and the share done, 0 to 1, about 50 times a second, by the thread that called. When it
-    /// answers `Break`, the opening ends at once with [`SceneError::Cancelled`].
+    /// A model without lights gets a sun and a sky; a model with lights has a black sky. The
+    /// model's first camera becomes the camera `default`; a model without cameras gets one. The
+    /// calling thread calls `progress` about 50 times a second with the current step and the
+    /// completed fraction, 0 to 1. If it returns `Break`, the opening ends at once with
+    /// [`SceneError::Cancelled`].
     pub fn open(
         spec: &str,
         progress: &dyn Fn(&str, f32) -> ControlFlow<()>,

@@ -33,7 +33,7 @@ impl Watch {
             .map_or_else(|e| e.into_inner().clone(), |now| now.clone())
     }
 
-    /// All files read or looked up so far, sorted.
+    /// Files read or looked up, sorted.
     pub fn files(&self) -> Vec<PathBuf> {
         self.files
             .lock()

@@ -1,5 +1,5 @@
-//! Uncompressed textures at another size: for arrays whose layers must match, and for devices
-//! without block compression.
+//! Uncompressed textures at another size: for arrays with equal layers, and for devices without
+//! block compression.
 
 use super::texture::{Filter, first_level_rgba, texture_from_rgba};
 use super::{Texture, TextureFormat};

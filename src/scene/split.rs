@@ -13,10 +13,11 @@ pub const MAX_TRIANGLES: usize = 64 << 20;
 impl Scene {
     /// A copy in which no triangle has an edge longer than `max_edge` metres in the world.
     ///
-    /// Whether an edge is split depends on its ends alone, and its midpoint is the same from both sides: triangles
-    /// that share an edge stay without cracks, also across seams of normals and texture coordinates. A mesh placed
-    /// more than once is split for its largest placement, in its pose at 0 s. Meshes that would take the scene past [`MAX_TRIANGLES`],
-    /// and everything when `max_edge` is not above 0, stay as they are; a warning says so.
+    /// Whether an edge is split depends only on its ends, and both sides compute the same midpoint.
+    /// Triangles that share an edge therefore stay watertight, also across seams of normals and
+    /// texture coordinates. A mesh with several placements is split for the largest one, in its
+    /// pose at 0 s. Meshes that would exceed [`MAX_TRIANGLES`] stay unchanged, as does the whole
+    /// scene if `max_edge` is not positive; a warning reports it.
     pub fn split_triangles(&self, max_edge: f32) -> Scene {
         let mut scene = self.clone();
         if max_edge.is_nan() || max_edge <= 0.0 {

@@ -5,9 +5,9 @@ use glam::Vec3;
 use super::{Mesh, Scene};
 
 impl Scene {
-    /// Origin of the shaders' world in scene coordinates. It is 0 unless the scene is so far away
-    /// that 32-bit coordinates become coarse. Then it is near the middle of the scene, on a grid
-    /// that keeps the coordinates exact.
+    /// Origin of the shaders' world in scene coordinates. It is 0 unless the scene is too far away
+    /// for accurate 32-bit coordinates. Then it is near the middle of the scene, on a grid that
+    /// keeps the coordinates exact.
     pub fn origin(&self) -> Vec3 {
         origin_of(self.bounds())
     }

@@ -42,8 +42,8 @@ const VARIABLE: u32 = 59;
 /// Storage classes with memory per invocation, workgroup or vertex: Input, Output, Workgroup,
 /// Private, Function.
 const OWN: [u32; 5] = [1, 3, 4, 6, 7];
-/// Instructions whose first operand is the type of their result: undefined, constants, function,
-/// parameter, call, load, composites, copies, select, phi.
+/// Instructions with a result type as first operand: undefined, constants, function, parameter,
+/// call, load, composites, copies, select, phi.
 const VALUES: [u32; 15] = [
     1,
     44,

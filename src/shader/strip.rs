@@ -70,8 +70,8 @@ pub fn strip_outputs(words: &[u32], locations: &[u32]) -> Vec<u32> {
     out
 }
 
-/// Removes write-only storage images at these bindings with their stores. Images whose size is
-/// queried stay.
+/// Removes write-only storage images at these bindings with their stores. Images with size queries
+/// stay.
 ///
 /// SPIR-V 1.6, sections 2.16 (the entry point lists all global variables) and 3.52.10 (images).
 pub fn strip_images(words: &[u32], bindings: &[u32]) -> Vec<u32> {

@@ -48,7 +48,7 @@ impl FrameSlot {
             pending: false,
         };
         let d = &gpu.device;
-        // SAFETY: plain creations; `drop` destroys what was made, null or not.
+        // SAFETY: plain creations; `drop` destroys the handles, null or not.
         unsafe {
             let at = || VulkanError::at("create a frame");
             (slot.pool, slot.buffer) = command_buffer(gpu)?;
@@ -65,17 +65,18 @@ impl FrameSlot {
         Ok(slot)
     }
 
-    /// Waits for the frame that was submitted from this slot, if any, and returns its timestamps in ticks.
+    /// Waits for the last frame submitted from this slot and returns its timestamps in ticks.
     ///
     /// # Errors
-    /// The device was lost; the frame took longer than [`super::GpuOptions::patience`] allows: from then on nothing of the
-    /// device is destroyed, because its work may go on.
+    /// The device was lost, or the frame exceeded [`super::GpuOptions::patience`]. After a timeout
+    /// no object of the device is destroyed, because its work may continue.
     pub fn wait(&mut self) -> Result<Option<Vec<u64>>> {
         if !self.pending {
             return Ok(None);
         }
         let d = &self.gpu.device;
-        // SAFETY: the fence was submitted with this slot's commands, and the queries up to `written` are in them.
+        // SAFETY: the fence was submitted with this slot's commands, which write the queries up to
+        // `written`.
         unsafe {
             self.gpu.wait_for(self.fence)?;
             d.reset_fences(&[self.fence])
@@ -142,8 +143,8 @@ impl FrameSlot {
         let d = &self.gpu.device;
         let at = || VulkanError::at("record a frame");
         let queries = (timed && self.query_count > 0).then_some((self.queries, 0));
-        // SAFETY: the buffer is the pool's, which is this slot's or a recording's: nothing of theirs is pending when they are
-        // recorded.
+        // SAFETY: the buffer belongs to the pool of this slot or of a recording, and neither is
+        // pending when it is recorded.
         unsafe {
             d.reset_command_pool(pool, vk::CommandPoolResetFlags::empty())
                 .map_err(at())?;
@@ -189,7 +190,8 @@ impl FrameSlot {
             .lock()
             .unwrap_or_else(std::sync::PoisonError::into_inner);
         let d = &self.gpu.device;
-        // SAFETY: the buffers are recorded and not pending, nor are the slot's queries; the lock keeps the queue to one thread.
+        // SAFETY: the buffers are recorded and not pending, nor are the slot's queries; the lock
+        // restricts the queue to one thread.
         unsafe {
             if self.query_count > 0 {
                 d.reset_query_pool(self.queries, 0, self.query_count);
@@ -274,8 +276,8 @@ impl Drop for FrameSlot {
     }
 }
 
-// SAFETY (all `unsafe` below): the command buffer is in the recording state for as long as a `Commands` exists, and
-// every handle comes from an owner that callers keep alive until the frame has finished.
+// SAFETY (all `unsafe` below): the command buffer is in the recording state as long as a `Commands`
+// exists. Callers keep the owner of every handle alive until the frame has finished.
 #[allow(
     clippy::undocumented_unsafe_blocks,
     reason = "one reason for all, above"

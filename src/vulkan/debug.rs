@@ -5,14 +5,15 @@ use std::ffi::{CStr, c_void};
 use std::io::Write;
 use std::sync::Mutex;
 
-/// The messages so far. The owner boxes it, so that the callback's pointer stays valid.
+/// Messages of the validation layer. The owner boxes them, so that the callback's pointer stays
+/// valid.
 #[derive(Default)]
 pub(super) struct Messages(pub(super) Mutex<Vec<String>>);
 
 /// Receives one message of the validation layer.
 ///
 /// # Safety
-/// Called by the loader with a valid `data` and with `user` pointing at the [`Messages`] given on creation, which
+/// The loader passes a valid `data`, and as `user` the [`Messages`] given on creation, which
 /// outlives the messenger.
 pub(super) unsafe extern "system" fn on_message(
     severity: vk::DebugUtilsMessageSeverityFlagsEXT,

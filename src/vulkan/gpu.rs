@@ -161,7 +161,7 @@ pub struct Gpu {
     pub(super) allocator: Mutex<Option<Allocator>>,
     pub(super) pipeline_cache: vk::PipelineCache,
     pub(super) names: Option<Names>,
-    /// What the device is.
+    /// Properties of the device.
     pub info: DeviceInfo,
     cache_file: Option<PathBuf>,
     patience: Option<Duration>,
@@ -196,7 +196,7 @@ fn door() -> Option<MutexGuard<'static, ()>> {
 const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
 
 fn load() -> Result<Entry> {
-    // SAFETY: loads the system's Vulkan loader, whose initialisation has no preconditions.
+    // SAFETY: loads the system's Vulkan loader; its initialisation has no preconditions.
     unsafe { Entry::load() }.map_err(|e| VulkanError::Loader(e.to_string()))
 }
 
@@ -496,7 +496,8 @@ impl Gpu {
             create_instance(&entry, options.validation, display, &messages)?;
         let messenger = if options.validation {
             let api = ext::debug_utils::Instance::new(&entry, &instance);
-            // SAFETY: the callback's user data is the boxed message list, dropped after the messenger.
+            // SAFETY: the callback's user data is the boxed message list, which outlives the
+            // messenger.
             let handle =
                 unsafe { api.create_debug_utils_messenger(&messenger_info(&messages), None) }
                     .map_err(VulkanError::at("create the debug messenger"))?;
@@ -539,7 +540,7 @@ impl Gpu {
             .and_then(crate::files::read_checked)
             .unwrap_or_default();
         let cache_info = vk::PipelineCacheCreateInfo::default().initial_data(&blob);
-        // SAFETY: the driver checks the blob's header; its content was checked against its checksum.
+        // SAFETY: the driver checks the blob's header; a checksum verified its content.
         let pipeline_cache = unsafe { device.create_pipeline_cache(&cache_info, None) }
             .map_err(VulkanError::at("create the pipeline cache"))?;
         let patience = options
@@ -584,7 +585,7 @@ impl Gpu {
             0 => {}
             1 => return Err(at()(vk::Result::ERROR_DEVICE_LOST)),
             2 => {
-                // SAFETY: a plain creation; a hung device leaves what it has.
+                // SAFETY: a plain creation; a hung device leaks its objects.
                 fence = unsafe {
                     self.device
                         .create_fence(&vk::FenceCreateInfo::default(), None)
@@ -592,7 +593,7 @@ impl Gpu {
                 .map_err(at())?;
                 patience = Some(SHORT);
             }
-            _ => panic!("a panic that was asked for by a test"),
+            _ => panic!("a panic injected by a test"),
         }
         let limit = patience.map_or(u64::MAX, |p| {
             u64::try_from(p.as_nanos()).unwrap_or(u64::MAX)
@@ -618,7 +619,7 @@ impl Gpu {
         self.hung.load(Ordering::Relaxed)
     }
 
-    /// Validation messages so far; empty without the validation layer.
+    /// Messages of the validation layer; empty without it.
     pub fn messages(&self) -> Vec<String> {
         self.messages
             .0
@@ -703,7 +704,7 @@ fn create_device(
         .enabled_features(&features)
         .push_next(&mut v13)
         .push_next(&mut v12);
-    // SAFETY: every feature and extension asked for was reported by this device.
+    // SAFETY: this device supports every enabled feature and extension.
     unsafe { instance.create_device(physical, &info, None) }
         .map_err(VulkanError::at("open the device"))
 }
@@ -722,8 +723,8 @@ impl Drop for Gpu {
         // SAFETY: the device is alive. The wait may be long, so the lock is not held.
         let _ = unsafe { self.device.device_wait_idle() };
         let _door = door();
-        // SAFETY: every object made from the device holds an `Arc` of this, so all are gone; the allocator frees its
-        // memory before the device goes.
+        // SAFETY: every object of the device holds an `Arc` of this, so all are destroyed; the
+        // allocator frees its memory before the device.
         unsafe {
             self.device
                 .destroy_pipeline_cache(self.pipeline_cache, None);

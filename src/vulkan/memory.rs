@@ -158,9 +158,10 @@ impl Bare {
     }
 }
 
-/// Lays resources into one piece of memory of so many bytes, each at its offset ([`Bare::needs`]); or each into its own, where no
-/// kind of memory is for all. What lies in the same place must not be needed at the same time, and whoever is needed next
-/// begins with undefined content (Vulkan 1.3, section 12.8, Memory Aliasing).
+/// Binds resources to one allocation of `size` bytes, each at its offset ([`Bare::needs`]). If no
+/// memory type suits all of them, each gets its own allocation. Overlapping resources must not be
+/// in use at the same time, and each use starts with undefined content (Vulkan 1.3, section 12.8,
+/// Memory Aliasing).
 pub fn lay_together(
     gpu: &Arc<Gpu>,
     name: &str,
@@ -202,8 +203,8 @@ pub fn lay_together(
         let what = || format!("bind shared memory of '{name}'");
         match bare {
             Bare::Buffer(b) => {
-                // SAFETY: offsets are multiples of the alignment and the resource ends within the memory, as the caller
-                // laid it out by `needs`; its kind is one of all.
+                // SAFETY: the caller aligned the offsets and sized the memory by `needs`, and the
+                // memory type suits all resources.
                 unsafe {
                     gpu.device
                         .bind_buffer_memory(b.handle, memory, start + *offset)
@@ -306,7 +307,8 @@ impl Buffer {
             AllocationScheme::GpuAllocatorManaged
         };
         let allocation = allocate(gpu, name, requirements, location, scheme)?;
-        // SAFETY: the memory is new, large enough and of an allowed type (the allocator chose by `requirements`).
+        // SAFETY: the memory is new, large enough and of an allowed type, because the allocator
+        // used `requirements`.
         let bound = unsafe {
             gpu.device
                 .bind_buffer_memory(handle, allocation.memory(), allocation.offset())

@@ -1,7 +1,7 @@
-//! A thin layer over Vulkan 1.3: one device and one queue, memory that frees itself, pipelines, timestamps.
+//! A thin layer over Vulkan 1.3: one device and one queue, automatic memory, pipelines, timestamps.
 //!
-//! It knows no graph, no scene and no voxels. All `unsafe` of the crate is here; every handle is owned by a type
-//! that keeps the [`Gpu`] alive and destroys the handle when dropped.
+//! Independent of graphs, scenes and voxels. All `unsafe` of the crate is here. Every handle has an
+//! owner that keeps the [`Gpu`] alive and destroys the handle on drop.
 
 #![allow(unsafe_code, reason = "Vulkan is called here and nowhere else")]
 
@@ -55,7 +55,7 @@ pub enum VulkanError {
     NoValidation,
     /// Device memory ran out.
     #[error(
-        "out of device memory: {what} needs {mib:.0} MiB. Use a smaller picture, or what else makes it smaller"
+        "out of device memory: {what} needs {mib:.0} MiB. Reduce the picture size or other settings that determine it"
     )]
     OutOfMemory {
         /// The resource that did not fit.
@@ -80,7 +80,7 @@ pub enum VulkanError {
     Lost(String),
     /// A frame exceeded its time limit ([`GpuOptions::patience`]).
     #[error(
-        "the GPU has not finished a frame within {0:.0} s: a shader hangs, or asks for too much"
+        "the GPU has not finished a frame within {0:.0} s: a shader hangs or takes too long"
     )]
     Hung(f64),
     /// The device cannot present to this window.

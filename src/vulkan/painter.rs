@@ -90,10 +90,10 @@ fn renderer_error(e: egui_ash_renderer::RendererError) -> VulkanError {
 }
 
 impl Painter {
-    /// A painter for a window, with room for so many pictures.
+    /// A painter for a window, with a number of pictures.
     ///
     /// # Errors
-    /// The device cannot present to the window, out of memory.
+    /// The device cannot present to the window; out of memory.
     pub fn for_window(
         gpu: &Arc<Gpu>,
         surface: Surface,
@@ -160,7 +160,7 @@ impl Painter {
             waited_ms: 0.0,
         };
         let count = u32::try_from(pictures).unwrap_or(u32::MAX).max(1);
-        // SAFETY: plain creations; `drop` destroys what was made.
+        // SAFETY: plain creations; `drop` destroys the handles.
         unsafe {
             let at = || VulkanError::at("prepare to paint");
             let d = &gpu.device;
@@ -334,7 +334,8 @@ impl Painter {
                 .render_area(vk::Rect2D::default().extent(extent))
                 .layer_count(1)
                 .color_attachments(&color);
-            // SAFETY: the command buffer is recording, and view and image live until the frame has finished.
+            // SAFETY: the command buffer is recording, and view and image live until the frame has
+            // finished.
             unsafe { gpu.device.cmd_begin_rendering(commands.handle, &info) };
             result = renderer.cmd_draw(commands.handle, extent, scale, primitives);
             // SAFETY: as above.
@@ -705,7 +706,7 @@ fn plain_image(
 
 impl Drop for Painter {
     fn drop(&mut self) {
-        // SAFETY: waits for all frames, then destroys what they used before the device can go.
+        // SAFETY: waits for all frames, then destroys their resources before the device is dropped.
         unsafe {
             let d = &self.gpu.device;
             let _ = d.device_wait_idle();

@@ -216,7 +216,8 @@ impl Pipeline {
             },
             push_stages,
         };
-        // SAFETY: creation calls with structures that outlive them; `drop` destroys what was made, null or not.
+        // SAFETY: the structures outlive the creation calls; `drop` destroys the handles, null or
+        // not.
         unsafe {
             let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
             pipeline.set_layout = gpu
@@ -418,7 +419,8 @@ impl Drop for Pipeline {
         if self.gpu.is_hung() {
             return;
         }
-        // SAFETY: owners drop pipelines only after the frames that use them have finished; null handles are ignored.
+        // SAFETY: owners drop pipelines only after the frames that use them; null handles are
+        // ignored.
         unsafe {
             self.gpu.device.destroy_pipeline(self.handle, None);
             self.gpu.device.destroy_pipeline_layout(self.layout, None);
@@ -529,7 +531,8 @@ impl DescriptorPool {
                 }
             })
             .collect();
-        // SAFETY: the set is new and in no command buffer; owners keep the resources alive while frames use it.
+        // SAFETY: the set is new and not in a command buffer; owners keep the resources alive while
+        // frames use it.
         unsafe { self.gpu.device.update_descriptor_sets(&list, &[]) };
         Ok(DescriptorSet(set))
     }

@@ -1,9 +1,10 @@
-//! Buffers that two devices of one physical device share, so that a picture made on one is painted by the other without
-//! passing through main memory.
+//! Buffers shared by two devices of one physical device, so that one can paint a picture of the
+//! other without a copy through main memory.
 //!
-//! No semaphore is shared: who reads is told of a picture when the fence of the frame that wrote it has been waited for
-//! (the host orders the two), and holds the buffer until its own frame has finished. So neither device ever waits on
-//! the other's queue, and a shader that hangs in one holds up nothing in the other.
+//! No semaphore is shared. The reader gets a picture after the writing frame's fence has been
+//! waited for, so the host orders the two, and it holds the buffer until its own frame has
+//! finished. Neither device waits for the other's queue, so a hanging shader on one does not block
+//! the other.
 
 #[cfg(unix)]
 use super::memory::Memory;
@@ -132,8 +133,8 @@ impl Buffer {
             .memory_type_index(handed.kind)
             .push_next(&mut dedicated)
             .push_next(&mut import);
-        // SAFETY: size and kind are those that the memory was made with, on a device with the same kinds (callers
-        // compare `DeviceId`s). A successful import owns the descriptor.
+        // SAFETY: size and memory type match the exported memory, on a device with the same types
+        // (callers compare `DeviceId`s). A successful import owns the descriptor.
         let memory = match unsafe { gpu.device.allocate_memory(&info, None) } {
             Ok(memory) => memory,
             Err(_) => {
@@ -171,7 +172,8 @@ impl Buffer {
         let info = vk::MemoryGetFdInfoKHR::default()
             .memory(memory)
             .handle_type(HANDLE);
-        // SAFETY: the memory was made to be exported as this; each call makes a descriptor of its own.
+        // SAFETY: the memory was allocated for export with this handle type; each call creates a
+        // new descriptor.
         let file = unsafe { loader.get_memory_fd(&info) }
             .map_err(VulkanError::at("share a picture's memory"))?;
         // SAFETY: the descriptor is new and has no other owner.

@@ -88,7 +88,7 @@ impl Swapchain {
     /// Images for a surface size; `None` if the window has no area.
     pub fn new(gpu: &Arc<Gpu>, surface: &Surface, size: (u32, u32)) -> Result<Option<Swapchain>> {
         let at = || VulkanError::at("make the window's images");
-        // SAFETY: device and surface belong to one instance; what is made is destroyed in `drop`.
+        // SAFETY: device and surface belong to one instance; `drop` destroys the created objects.
         unsafe {
             let physical = gpu.physical;
             let can = surface

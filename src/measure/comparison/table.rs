@@ -54,7 +54,7 @@ fn block(out: &mut String, part: &PartComparison, pictures: &[String]) {
         if frame.is_some_and(|f| f.within_noise.get(i) == Some(&true)) {
             let _ = writeln!(
                 out,
-                "  {letter} cannot be told from the reference: relMSE is below 4 times its noise"
+                "  {letter} is indistinguishable from the reference: relMSE is below 4 times its noise"
             );
         }
     }

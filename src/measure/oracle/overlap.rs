@@ -73,11 +73,12 @@ impl Axes {
         self.axes[3].direction
     }
 
-    /// Against a box of this centre and these half edges (m).
+    /// Tests a box given by its centre and half edges [m].
     ///
-    /// First for the conservative set, which is 26-separating: all that the triangle overlaps. Then for the thin one,
-    /// which is 6-separating: those of them in which it may cross a line between the middles of opposite faces (Schwarz
-    /// and Seidel 2010, Section 4.2: the plane, and the edges in the projection along the dominant axis).
+    /// First for the conservative, 26-separating set: all boxes that the triangle overlaps. Then
+    /// for the thin, 6-separating set: those in which the triangle may cross a line between the
+    /// centres of opposite faces (Schwarz and Seidel 2010, Section 4.2: the plane, and the edges in
+    /// the projection along the dominant axis).
     pub fn overlap(&self, centre: DVec3, half: DVec3) -> (Overlap, Overlap) {
         let conservative = decide(self.axes.iter(), centre, |a| {
             (a.direction.abs() * half).element_sum()

@@ -32,9 +32,9 @@ struct Resources {
     color: String,
     /// 3D texture of the unit normal * 0.5 + 0.5.
     normal: String,
-    /// Buffer that says where the cells lie: a 32-bit word that is 1 where they are boxes, else 0; the z of the first of
-    /// them in the textures; how many there are along x, y and z; then, as floats, the world coordinates (m) of their
-    /// borders along x, y and z, one more than cells each.
+    /// Buffer of the cell borders. First a 32-bit word that is 1 if cells are boxes, else 0; the z
+    /// of the first cell in the textures; and the number of cells along x, y and z. Then, as
+    /// floats, the world coordinates of the borders along x, y and z [m], one more than cells each.
     borders: String,
 }
 
@@ -47,7 +47,7 @@ fn resources(graph: &Graph) -> Result<Option<Resources>, Diagnostic> {
         let missing = || {
             graph.sources.error(
                 tool.at,
-                format!("'{TOOL}' is told no resource '{role}' (docs/graph.md)"),
+                format!("'{TOOL}' names no resource '{role}' (docs/graph.md)"),
             )
         };
         tool.value.resource(role).ok_or_else(missing)

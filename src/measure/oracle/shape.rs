@@ -13,11 +13,11 @@ pub const SHAPES: [&str; 6] = [
     "other",
 ];
 
-/// The class of a triangle, an index of [`SHAPES`].
+/// The class of a triangle, an index into [`SHAPES`].
 ///
-/// Sub-voxel: smaller along each axis than the cell at its middle. Obtuse: an angle above 150 degrees. Needle: its
-/// smallest height is below 1/20 of its longest edge. Huge: a quarter of the grid's cells or more along an axis.
-/// Axis-aligned: its normal is an axis to within 1e-3.
+/// Sub-voxel: smaller along each axis than the cell at its centroid. Obtuse: an angle above 150
+/// degrees. Needle: a smallest height below 1/20 of the longest edge. Huge: at least a quarter of
+/// the grid's cells along an axis. Axis-aligned: the normal is an axis within 1e-3.
 pub fn shape_of(t: [DVec3; 3], grid: &Grid) -> usize {
     let edge = grid.edges_at((t[0] + t[1] + t[2]) / 3.0);
     let cells = (t[0].max(t[1]).max(t[2]) - t[0].min(t[1]).min(t[2])) / edge;

@@ -24,7 +24,7 @@ pub enum Goal {
 /// Progress towards the goal.
 #[derive(Clone, Copy, Debug)]
 pub struct Gathered {
-    /// Samples per pixel so far.
+    /// Samples per pixel gathered.
     pub samples: u64,
     /// Estimated samples at the goal.
     pub goal: u64,
@@ -38,12 +38,13 @@ const KEEP_EVERY: Duration = Duration::from_secs(30);
 /// Maximum samples for a noise goal, which may be unreachable.
 const MOST_SAMPLES: u64 = 1 << 20;
 
-/// Gathers the reference of an experiment, from where an earlier run stopped. `scene` is lit as the experiment says.
-/// The same samples give the same bits on the same device, in one run or in many. `progress` may stop it; whole blocks of
-/// samples are kept then too.
+/// Gathers the reference of an experiment and resumes an earlier run. `scene` has the experiment's
+/// lighting. Equal sample counts give equal bits on a device, regardless of interruptions.
+/// `progress` may stop the run; whole blocks of samples are still saved.
 ///
 /// # Errors
-/// Everything that can be wrong with an experiment; stopped in the first block; a folder that cannot be written to; samples that are not finite.
+/// An invalid experiment; a stop in the first block; a read-only folder; samples that are not
+/// finite.
 pub fn gather(
     lab: &Lab,
     experiment: &Experiment,
@@ -227,7 +228,7 @@ fn frame(lab: &Lab, session: &mut Session, sums: &mut Sums, samples: u64) -> Res
         .map_err(LabError::Request)?;
     if !session.set_params(lab, &params)? {
         return Err(LabError::Request(
-            "'first_sample' of the reference graph must not change what is planned".into(),
+            "'first_sample' of the reference graph must not change the plan".into(),
         ));
     }
     session.run(1)?;

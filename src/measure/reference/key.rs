@@ -18,11 +18,12 @@ const WHICH_SAMPLES: [&str; 2] = ["samples", "first_sample"];
 /// Group of the parameters that affect only the display-encoded picture.
 const DISPLAY: &str = "Display";
 
-/// The experiment of the reference of another: the same scene, camera, size and time under [`GRAPH`]. What the other
-/// sets of the parameters that both graphs have is kept: the material model is part of the question, not of the answer.
+/// The reference experiment of another one: the same scene, camera, size and time under [`GRAPH`].
+/// Parameters that both graphs share keep their values, because the material model defines the
+/// expected result.
 ///
 /// # Errors
-/// The graph of references, or that of the experiment, cannot be read; a value that it does not take.
+/// A graph that cannot be read; a value that the reference graph does not accept.
 pub fn experiment_for(
     home: &Workspace,
     experiment: &Experiment,

@@ -285,7 +285,7 @@ pub(super) fn read(
     let wrong = |why: &str| failed(&file, format!("{why}; delete the folder"));
     let bytes = read_bounded(&file, size, graph.parts.len()).map_err(|e| wrong(&e))?;
     if hex(&Sha256::digest(&bytes)) != record.sha256 {
-        return Err(wrong("its content is not what was written"));
+        return Err(wrong("its content does not match its checksum"));
     }
     let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(&bytes), false)
         .map_err(|e| wrong(&e.to_string()))?;

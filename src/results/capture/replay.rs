@@ -53,8 +53,9 @@ pub fn changes(folder: &Path, manifest: &Manifest) -> Vec<String> {
     list
 }
 
-/// Renders a capture's experiment from the graph and shaders in its folder, and compares every picture texel by texel.
-/// `open` opens a scene by name or path. The new pictures are written below `output`, if given.
+/// Renders a capture from the graph and shaders in its folder and compares every picture texel by
+/// texel. `open` opens a scene by name or path. The new pictures are written below `output`, if
+/// given.
 ///
 /// # Errors
 /// A capture that cannot be rendered.

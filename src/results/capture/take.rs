@@ -57,12 +57,12 @@ pub fn free_name(folder: &Path, name: &str) -> String {
         .unwrap_or_else(|| name.to_string())
 }
 
-/// Renders an experiment afresh and keeps pictures, sources, settings and measurements in `folder/name`. Nothing is
-/// there before all of it is. `scene` is the scene as it was opened, or as the experiment has changed it. Returns the
-/// folder of the capture.
+/// Renders an experiment from its first frame and stores pictures, sources, settings and
+/// measurements in `folder/name`, atomically. `scene` is the opened scene, with or without the
+/// experiment's changes. Returns the folder of the capture.
 ///
 /// # Errors
-/// A capture of that name exists; everything that can be wrong with the experiment; no room or permission.
+/// An existing capture of that name; an invalid experiment; no space or permission.
 pub fn take(
     lab: &Lab,
     experiment: &Experiment,

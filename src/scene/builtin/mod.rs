@@ -99,7 +99,7 @@ const ALL: &[(&str, &str, &str)] = &[
     ),
     (
         "door-ajar",
-        "a dark room beside a bright one: light comes through a gap of 25 cm",
+        "a dark room next to a bright one: light enters through a gap of 25 cm",
         include_str!("door-ajar.ron"),
     ),
     (

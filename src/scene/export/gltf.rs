@@ -1,4 +1,5 @@
-//! glTF 2.0 with one buffer: vertices interleaved as they are in memory, then indices, motion and PNG images.
+//! glTF 2.0 with one buffer: interleaved vertices as in memory, then indices, motion and PNG
+//! images.
 
 use crate::files::FileError;
 use std::path::Path;

@@ -13,11 +13,12 @@ use super::{Lookups, Scene, SceneError};
 use crate::files;
 
 impl Scene {
-    /// Writes an .obj (with .mtl and PNG textures beside it), .glb, or .gltf (with .bin).
+    /// Writes an .obj (with an .mtl and PNG textures), a .glb, or a .gltf (with a .bin).
     ///
-    /// OBJ holds the pose at time 0 and no lights or cameras. glTF holds everything but the sky, whether a light casts
-    /// shadows, and skins and morph targets, which stand as at time 0; a picture of the sky is written beside it, .sky.exr, as bright as it is here and not turned.
-    /// Each file appears whole or not at all. Returns warnings for content that the format cannot hold.
+    /// OBJ holds the pose at time 0 without lights and cameras. glTF omits the sky, shadow flags,
+    /// skins and morph targets; deformed meshes have their pose at time 0. An environment map is
+    /// written to .sky.exr, scaled by the sky's radiance and without its rotation. Each file is
+    /// written atomically. Returns warnings about content that the format cannot hold.
     pub fn export(&self, path: &Path) -> Result<Vec<String>, SceneError> {
         let extension = crate::files::ending(path);
         match extension.as_str() {

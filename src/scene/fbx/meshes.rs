@@ -24,8 +24,8 @@ pub(super) struct Wanted {
     pub materials: Vec<u32>,
 }
 
-/// The meshes in order, their rigs, and whether any part lacks a material. Such a part uses the
-/// index after the last material of the file.
+/// The meshes in order, their rigs, and whether any part lacks a material. Parts without one use
+/// the index after the last material of the file.
 pub(super) fn read(
     file: &ufbx::Scene,
     wanted: &[Wanted],

@@ -1,8 +1,10 @@
-//! FBX, binary or text, of all versions that ufbx reads: nodes with meshes, materials, lights and cameras, and motion.
+//! FBX, binary or text, of all versions that ufbx reads: nodes with meshes, materials, lights and
+//! cameras, and motion.
 //!
-//! Files say their unit and axes; everything is converted to metres with y up. Intensities of lights have no unit in FBX:
-//! a hundredth of the number is taken as W/m^2 or W/sr, whatever the unit of length. Blender writes watts; its lamps are
-//! divided by 4 pi, as its glTF exporter does. `lights_scale` of a scene file scales them.
+//! Files declare their unit and axes; everything is converted to metres with y up. Light
+//! intensities have no unit in FBX: a hundredth of the number is taken as W/m^2 or W/sr, for any
+//! unit of length. Blender writes watts, so its lamps are divided by 4 pi, as in its glTF exporter.
+//! `lights_scale` of a scene file scales them.
 
 mod animation;
 mod blends;

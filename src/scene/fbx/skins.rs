@@ -48,7 +48,7 @@ pub(super) fn add(rig: &mut Rig, mesh: &Mesh, skin: &SkinDeformer, warnings: &mu
     }
 }
 
-/// The joints of a skin whose bones have nodes.
+/// The joints of a skin, for bones with nodes.
 pub(super) fn joints(skin: &SkinDeformer, frames: &Frames, warnings: &mut Warnings) -> Vec<Joint> {
     let joint = |cluster: &ufbx::SkinCluster| {
         let inverse_bind = placement(&affine(&cluster.geometry_to_bone));

@@ -8,7 +8,7 @@ use crate::scene::{Environment, Instance, Mover, Scene};
 /// Maximum number of moving frames in a scene; each placement of a model has its own.
 const MAX_MOVERS: usize = 1 << 20;
 
-/// A model whose meshes, materials and textures are in the scene. It can be placed many times.
+/// A model with its meshes, materials and textures moved to the scene. It can be placed many times.
 pub(super) struct Added {
     /// Instances, lights and cameras, with mesh indices of the scene.
     pub model: Scene,

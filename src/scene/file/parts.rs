@@ -407,7 +407,7 @@ impl Walk<'_> {
         let still =
             repeat.rotate_deg.is_none() && repeat.quarters.is_none() && repeat.scale.is_none();
         if solid.is_some() && !(still && places.iter().all(|(turn, _)| *turn == 0.0)) {
-            return mesh.fail("", "what is in a solid cannot be turned or scaled".into());
+            return mesh.fail("", "parts of a solid cannot be rotated or scaled".into());
         }
         let [x, y, z] = repeat
             .rotate_deg

@@ -23,7 +23,7 @@ pub(super) struct Tracks {
     nodes: HashMap<usize, Track>,
     /// A curve per morph target, and the period.
     weights: HashMap<usize, (Vec<Curve<f32>>, Option<f32>)>,
-    /// Keys read so far.
+    /// Total keys read.
     keys: usize,
 }
 

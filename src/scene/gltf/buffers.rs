@@ -58,7 +58,7 @@ impl Buffers {
                         progress.reads(&path);
                         read_input(&path, MAX_BYTES).map_err(|error| {
                             format!(
-                                "buffer {}: {error}. Copy it beside the model",
+                                "buffer {}: {error}. Copy it next to the model",
                                 path.display()
                             )
                         })?

@@ -1,8 +1,9 @@
-//! glTF 2.0, text or binary: the node hierarchy with its meshes, lights and cameras, animation, skins and morph targets.
+//! glTF 2.0, text or binary: the node hierarchy with its meshes, lights and cameras, animation,
+//! skins and morph targets.
 //!
-//! Numbers of KHR_lights_punctual are taken as they are, lux as irradiance and candela as radiant intensity:
-//! there is no division by 683 lm/W, because few exporters write photometric units. Intensities that look photometric
-//! give a warning, and `lights_scale` of a scene file scales them.
+//! KHR_lights_punctual is read in radiometric units: lux as irradiance and candela as radiant
+//! intensity. Values are not divided by 683 lm/W, because few exporters write photometric units.
+//! Probably photometric intensities give a warning, and `lights_scale` of a scene file scales them.
 
 mod accessors;
 mod animation;
@@ -99,7 +100,7 @@ pub(super) fn load(
     }
     attach(&mut scene, posings, &rigs, meshes::MANY + buffers.len()).map_err(fail)?;
     lights::warn_of_units(&document, &scene.lights, &mut warnings);
-    // Warnings so far name parts of the file; each must name the file itself.
+    // The warnings name parts of the file; each must name the file itself.
     let name = path.display().to_string();
     scene.warnings = warnings.lines(&name);
     scene.warnings.extend(dropped.warning(&name));

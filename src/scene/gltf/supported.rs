@@ -28,7 +28,7 @@ const READ: [&str; 18] = [
     "MSFT_texture_dds",
 ];
 
-/// Optional compressions, whose uncompressed fallback is read, and the command that removes each.
+/// Optional compressions with the command that removes each; their uncompressed fallback is read.
 const COMPRESSED: [(&str, &str); 1] = [(
     "KHR_draco_mesh_compression",
     "Convert it with glTF Transform: npx @gltf-transform/cli copy IN.glb OUT.glb",

@@ -1,4 +1,4 @@
-//! Detection of closed parts of a mesh, whose back faces are never visible from outside.
+//! Detection of closed parts of a mesh; their back faces are never visible from outside.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -98,7 +98,7 @@ impl Mesh {
             [(a, b), (b, c), (c, a)]
         };
         let triangles = self.indices.as_chunks::<3>().0;
-        // By edge: its triangles, and whether each runs from the smaller index.
+        // Triangles of each edge, and whether each runs from the smaller index.
         let mut edges: HashMap<(usize, usize), Vec<(usize, bool)>> = HashMap::new();
         for (number, triangle) in triangles.iter().enumerate() {
             for (from, to) in edges_of(triangle) {

@@ -5,7 +5,7 @@ use crate::scene::{Mesh, Vertex};
 use bevy_mikktspace::{Geometry, TangentSpace};
 use glam::Vec3;
 
-/// MikkTSpace tangents; vertices whose corners disagree are split.
+/// MikkTSpace tangents; vertices with conflicting tangents are split.
 ///
 /// MikkTSpace's bitangent points along increasing v, which is down in the picture (glTF 2.0,
 /// 3.8.3). Normal maps have +y up (glTF 2.0, `material.normalTexture`), so the sign is negated.

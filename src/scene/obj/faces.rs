@@ -11,7 +11,7 @@ pub(super) struct Corner {
     pub normal: u32,
 }
 
-/// Counts of the attributes so far; negative numbers count back from them.
+/// Counts of the attributes read; negative numbers count back from them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Counts {
     pub positions: usize,

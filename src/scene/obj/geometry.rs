@@ -17,7 +17,7 @@ const LOOK: usize = 4096;
 /// Normal generation if the file gives no normals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Smoothing {
-    /// By crease angle: the file has no groups.
+    /// Crease angle: the file has no groups.
     Angle,
     /// Flat faces.
     Off,

@@ -108,7 +108,7 @@ pub(super) fn load(
                     _ => problem.to_string(),
                 };
                 let what = format!(
-                    "material libraries cannot be read ({problem}): grey stands in for their materials"
+                    "material libraries cannot be read ({problem}): their materials are replaced by grey"
                 );
                 warnings.add(what, shown(&path.display().to_string()));
             }

@@ -1,4 +1,5 @@
-//! Mip chains by area-weighted box filtering, in linear light, with alpha coverage and unit normals preserved.
+//! Mip chains by area-weighted box filtering in linear light, with preserved alpha coverage and
+//! unit normals.
 
 use std::sync::LazyLock;
 
@@ -193,7 +194,7 @@ fn mean(
     }
 }
 
-/// Fraction of texels whose alpha, scaled and quantised to a byte, reaches the cutoff.
+/// Fraction of texels with an alpha, scaled and quantised to a byte, at or above the cutoff.
 fn alpha_coverage(texels: &[Vec4], scale: f32, cutoff: f32) -> f32 {
     let passes = |t: &&Vec4| (t.w * scale * 255.0 + 0.5).floor() >= (cutoff * 255.0).round();
     texels.iter().filter(passes).count() as f32 / texels.len() as f32

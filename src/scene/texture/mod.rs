@@ -50,7 +50,7 @@ impl Source {
 /// How one or two images become a texture.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Recipe {
-    /// sRGB colour; `mask` is an alpha cutoff in 1/255 whose coverage the mips preserve.
+    /// sRGB colour; `mask` is an alpha cutoff in 1/255, and the mips preserve its coverage.
     Color { image: Source, mask: Option<u8> },
     /// sRGB colour from one image (white without it) and alpha from another.
     ColorAndMask {
@@ -218,7 +218,7 @@ fn cook(recipe: &Recipe, material: &str) -> (Texture, Vec<Notice>) {
                 &file,
                 material,
                 &problem,
-                "a checkerboard stands in for it",
+                "a checkerboard replaces it",
             ));
             (stand_in::checkerboard(recipe, &file), warnings)
         }

@@ -262,7 +262,8 @@ fn floats_and_colours() {
     near(&words.collect::<Vec<_>>(), &colors, 0.0006);
 }
 
-/// A stream that is cut or has a byte too many is refused. One with a changed byte is refused, or has the right size.
+/// A truncated or extended stream is refused. One with a changed byte is refused or has the right
+/// size.
 #[test]
 fn damaged_streams_are_refused() {
     let cases = [

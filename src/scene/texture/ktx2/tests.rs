@@ -70,7 +70,8 @@ fn plain_formats_are_read() {
     assert_eq!(one(Format::R8G8B8A8_SRGB, &[1, 2, 3, 4]), [1, 2, 3, 4]);
     assert_eq!(one(Format::B8G8R8A8_UNORM, &[1, 2, 3, 4]), [3, 2, 1, 4]);
     assert_eq!(one(Format::R8G8B8_UNORM, &[1, 2, 3]), [1, 2, 3, 255]);
-    // BC1 with the colours red and black (5:6:5), all texels the first; then with three colours, all texels the fourth.
+    // BC1 with the colours red and black (5:6:5), all texels the first; then with three colours,
+    // all texels the fourth.
     assert_eq!(
         one(Format::BC1_RGBA_UNORM_BLOCK, &[0, 0xf8, 0, 0, 0, 0, 0, 0]),
         [255, 0, 0, 255]
@@ -81,7 +82,8 @@ fn plain_formats_are_read() {
     // BC3: alpha of both ends, and a block of BC1.
     let block = [90, 90, 0, 0, 0, 0, 0, 0, 0, 0xf8, 0, 0, 0, 0, 0, 0];
     assert_eq!(one(Format::BC3_SRGB_BLOCK, &block), [255, 0, 0, 90]);
-    // BC7, mode 6: seven bits for each end of red, green, blue and alpha, then the lowest bit of each end.
+    // BC7, mode 6: seven bits for each end of red, green, blue and alpha, then the lowest bit of
+    // each end.
     let fields = [
         (64u128, 7),
         (127, 7),
