@@ -161,8 +161,7 @@ impl DeviceArgs {
 
 #[derive(Debug, Args)]
 struct SceneArgs {
-    /// A built-in scene's name, a scene RON, or a model file (.obj, .gltf, .glb, .fbx).
-    #[arg(value_parser = spec())]
+    #[arg(value_parser = spec(), help = format!("A built-in scene's name, or a {} file", crate::scene::extensions()))]
     scene: String,
     /// Write the scene to this file (.obj, .gltf or .glb) instead of describing it.
     #[arg(long)]

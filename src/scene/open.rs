@@ -1,19 +1,17 @@
 //! Opening a scene by name: a built-in, a scene file or a model file.
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
-use glam::Mat4;
-
-use crate::diagnostics::panics::caught;
 use crate::files::{ending, path_of};
 
-use super::limits::{check_extent, with_size_told};
+use super::formats::{SCENE_FILE, load_model};
+use super::limits::with_size_told;
 use super::progress::{Progress, Watch};
 use super::texture::with_kinds_told;
-use super::{Material, Scene, SceneError, builtin, defaults, fbx, file, gltf, obj};
+use super::{Scene, SceneError, builtin, defaults, file};
 
 /// Interval between calls of the callback while a scene loads.
 const ASK: Duration = Duration::from_millis(20);
@@ -85,11 +83,11 @@ fn open_watched(
 /// Opens a scene by name, on the worker thread.
 fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
     if builtin::is_one(spec) {
-        return builtin::open(spec, progress);
+        return file::open_builtin(spec, progress);
     }
     let path = &path_of(spec);
     progress.reads(path);
-    if ending(path) == "ron" {
+    if ending(path) == SCENE_FILE {
         return file::load(path, progress);
     }
     if path.extension().is_none() && !path.exists() {
@@ -108,59 +106,6 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
         let camera = own.unwrap_or_else(|| defaults::camera(&scene));
         scene.cameras.shift_insert(0, "default".into(), camera);
     }
-    Ok(scene)
-}
-
-/// The content of a model file without defaults; `clip` names the animation to play instead of the
-/// first.
-pub(super) fn load_model(
-    path: &Path,
-    clip: Option<&str>,
-    progress: Progress,
-) -> Result<Scene, SceneError> {
-    progress.reads(path);
-    let reader = match ending(path).as_str() {
-        "obj" if clip.is_some() => {
-            let message = "OBJ files have no clips. Leave `clip` out".into();
-            return Err(SceneError::Model {
-                path: path.into(),
-                message,
-            });
-        }
-        "obj" => |path: &Path, _: Option<&str>, progress: Progress| obj::load(path, progress),
-        "gltf" | "glb" => gltf::load,
-        "fbx" => fbx::load,
-        _ => {
-            let hint = "the file's extension must be .ron, .obj, .gltf, .glb or .fbx; convert other formats to glTF";
-            return Err(SceneError::NotFound {
-                spec: path.display().to_string(),
-                hint: hint.into(),
-            });
-        }
-    };
-    let mut scene = caught(|| reader(path, clip, progress)).unwrap_or_else(|message| {
-        let message = format!("{message}. The file is damaged; export it again");
-        Err(SceneError::Model {
-            path: path.into(),
-            message,
-        })
-    })?;
-    check_extent(&scene, Mat4::IDENTITY).map_err(|message| SceneError::Model {
-        path: path.into(),
-        message,
-    })?;
-    // Materials that discard everything already have a warning.
-    if scene.triangle_count() == 0 && !scene.materials.iter().any(Material::is_left_out) {
-        scene.warnings.push(format!(
-            "{}: no triangles: there is nothing to see",
-            path.display()
-        ));
-    }
-    scene.name = path
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
     Ok(scene)
 }
 

@@ -79,9 +79,7 @@ pub enum VulkanError {
     #[error("the GPU was lost during {0}: a shader ran too long, or the driver failed")]
     Lost(String),
     /// A frame exceeded its time limit ([`GpuOptions::patience`]).
-    #[error(
-        "the GPU has not finished a frame within {0:.0} s: a shader hangs or takes too long"
-    )]
+    #[error("the GPU has not finished a frame within {0:.0} s: a shader hangs or takes too long")]
     Hung(f64),
     /// The device cannot present to this window.
     #[error(

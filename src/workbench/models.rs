@@ -5,6 +5,8 @@ use egui::Ui;
 use egui_file_dialog::{DialogState, FileDialog};
 use std::path::{Path, PathBuf};
 
+use crate::scene::{SCENE_FILE, model_extensions};
+
 /// The model files of a menu, and the dialog.
 pub struct Models {
     /// Files found, once they were looked for.
@@ -16,16 +18,17 @@ pub struct Models {
 const DEEP: usize = 2;
 const MOST: usize = 200;
 
-const ENDINGS: [&str; 5] = ["fbx", "gltf", "glb", "obj", "ron"];
 const OPENED: &str = "Scenes, models, experiments";
 
 impl Models {
     /// Begins with the dialog at a folder.
     pub fn new(folder: &Path) -> Models {
+        let mut extensions: Vec<&str> = model_extensions().collect();
+        extensions.push(SCENE_FILE);
         let dialog = FileDialog::new()
             .title("Open a scene, a model or an experiment")
             .initial_directory(folder.to_path_buf())
-            .add_file_filter_extensions(OPENED, ENDINGS.to_vec())
+            .add_file_filter_extensions(OPENED, extensions)
             .default_file_filter(OPENED)
             .default_size([620.0, 360.0]);
         Models {
@@ -109,7 +112,7 @@ fn look(folder: &Path, deep: usize, list: &mut Vec<(PathBuf, u64)>) {
             if deep > 0 {
                 look(&path, deep - 1, list);
             }
-        } else if ending != "ron" && ENDINGS.contains(&ending.as_str()) {
+        } else if model_extensions().any(|extension| extension == ending) {
             list.push((path, entry.metadata().map_or(0, |m| m.len())));
         }
     }

@@ -1,9 +1,6 @@
 //! Built-in scenes: scene files that are compiled into the program.
 
-use std::path::Path;
-
-use super::progress::Progress;
-use super::{Scene, SceneError, file};
+use super::formats::extensions;
 
 /// Name, description and text of each scene file.
 const ALL: &[(&str, &str, &str)] = &[
@@ -144,16 +141,10 @@ pub(super) fn is_one(name: &str) -> bool {
     ALL.iter().any(|entry| entry.0 == name)
 }
 
-/// The built-in scene of this name.
-pub(super) fn open(name: &str, progress: Progress) -> Result<Scene, SceneError> {
-    let Some((_, _, text)) = ALL.iter().find(|entry| entry.0 == name) else {
-        return Err(SceneError::NotFound {
-            spec: name.into(),
-            hint: hint(name),
-        });
-    };
-    progress.step(name, 0.0)?;
-    file::read(text, Path::new(&format!("{name}.ron")), progress)
+/// The scene file of a built-in scene.
+pub(super) fn text(name: &str) -> Option<&'static str> {
+    let entry = ALL.iter().find(|entry| entry.0 == name)?;
+    Some(entry.2)
 }
 
 /// The hint for an unknown name.
@@ -162,15 +153,14 @@ pub(super) fn hint(name: &str) -> String {
     let nearest = names
         .iter()
         .max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)));
-    let all = names.join(", ");
-    match nearest {
-        Some(near) if strsim::jaro_winkler(near, name) > 0.7 => {
-            format!(
-                "did you mean '{near}'? Built-in scenes: {all}; otherwise give a .ron, .obj, .gltf, .glb or .fbx file"
-            )
-        }
-        _ => {
-            format!("built-in scenes: {all}; otherwise give a .ron, .obj, .gltf, .glb or .fbx file")
-        }
-    }
+    let near = nearest.filter(|near| strsim::jaro_winkler(near, name) > 0.7);
+    let (start, built_in) = match near {
+        Some(near) => (format!("did you mean '{near}'? "), "Built-in"),
+        None => (String::new(), "built-in"),
+    };
+    format!(
+        "{start}{built_in} scenes: {}; otherwise give a {} file",
+        names.join(", "),
+        extensions()
+    )
 }

@@ -2,7 +2,7 @@
 
 use glam::{Mat4, Vec3};
 
-use super::ModelEntry;
+use super::format::ModelEntry;
 use crate::scene::{Environment, Instance, Mover, Scene};
 
 /// Maximum number of moving frames in a scene; each placement of a model has its own.

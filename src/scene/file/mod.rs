@@ -1,8 +1,10 @@
 //! Scene files (RON): models, shapes, lights, sky and cameras.
 
+mod build;
 mod compose;
 mod format;
 mod parts;
+mod placement;
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -18,7 +20,7 @@ use crate::files::read_input_text;
 use super::limits::{check_extent, check_placed};
 use super::progress::Progress;
 use super::shapes::Problem;
-use super::{Environment, Scene, SceneError, builtin, defaults, environment, gltf, open};
+use super::{Environment, Scene, SceneError, builtin, defaults, environment, formats, gltf};
 use compose::Added;
 use format::{EnvironmentEntry, ModelEntry, SceneFile, SkyOf};
 
@@ -38,8 +40,20 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     read(&text, path, progress)
 }
 
+/// Opens a built-in scene by name.
+pub(super) fn open_builtin(name: &str, progress: Progress) -> Result<Scene, SceneError> {
+    let Some(text) = builtin::text(name) else {
+        return Err(SceneError::NotFound {
+            spec: name.into(),
+            hint: builtin::hint(name),
+        });
+    };
+    progress.step(name, 0.0)?;
+    read(text, Path::new(&format!("{name}.ron")), progress)
+}
+
 /// Parses a scene file. `path` resolves relative paths and appears in messages.
-pub(super) fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene, SceneError> {
+fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene, SceneError> {
     let file = parse(text, path)?;
     let name = path
         .file_stem()
@@ -79,7 +93,7 @@ pub(super) fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene,
     progress
         .share(file.models.len(), file.models.len() + 1)
         .step(&scene.name, 0.0)?;
-    let own = parts::build(&file, progress);
+    let own = build::build(&file, progress);
     let own = own.map_err(|Problem { near, message }| match progress.stopped() {
         true => SceneError::Cancelled,
         false => in_file(path, text, &near, message),
@@ -158,7 +172,7 @@ fn load_model(
     progress: Progress,
 ) -> Result<Scene, SceneError> {
     if let Some(name) = &entry.builtin {
-        return builtin::open(name, progress);
+        return open_builtin(name, progress);
     }
     let file = entry.file.as_deref().unwrap_or_default();
     let candidates = places(file, scene_file);
@@ -177,7 +191,7 @@ fn load_model(
             message,
         });
     };
-    let mut model = open::load_model(found, entry.clip.as_deref(), progress)?;
+    let mut model = formats::load_model(found, entry.clip.as_deref(), progress)?;
     if entry.lights {
         model.sky = defaults::sky_over(&model);
     } else {
