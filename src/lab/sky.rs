@@ -1,7 +1,8 @@
 //! The sky's picture on the device: prefiltered for rays and cones, and as a density for sampling
 //! directions.
 
-use crate::scene::environment::{Level, luminance};
+use crate::metrics::colour::luminance;
+use crate::scene::environment::Level;
 use crate::scene::{Environment, SkyPicture};
 use crate::vulkan::{Gpu, Image, ImageDesc, Result, Upload, View, ViewDesc, vk};
 use half::f16;

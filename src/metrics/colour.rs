@@ -1,4 +1,4 @@
-//! Colour spaces of FLIP. RGB is linear with the sRGB primaries; white is D65.
+//! Luminance, sRGB, and the colour spaces of FLIP. RGB is linear with the sRGB primaries; white is D65.
 
 use super::Kind;
 
@@ -16,6 +16,15 @@ pub fn srgb_to_linear(v: f32) -> f32 {
     }
 }
 
+/// Encodes a linear value in 0..1 as sRGB (IEC 61966-2-1).
+pub(crate) fn linear_to_srgb(v: f64) -> f64 {
+    if v <= 0.003_130_8 {
+        12.92 * v
+    } else {
+        1.055 * v.powf(1.0 / 2.4) - 0.055
+    }
+}
+
 /// The displayed value of a channel, 0 to 1: radiance is mapped by c / (1 + c), values in 0..1 are
 /// kept ([`Kind`]). The result is sRGB-encoded (IEC 61966-2-1) and not rounded.
 pub fn display(kind: Kind, c: f32) -> f64 {
@@ -25,11 +34,7 @@ pub fn display(kind: Kind, c: f32) -> f64 {
     } else {
         c.min(1.0)
     };
-    if shown <= 0.003_130_8 {
-        12.92 * shown
-    } else {
-        1.055 * shown.powf(1.0 / 2.4) - 0.055
-    }
+    linear_to_srgb(shown)
 }
 
 /// The white point's XYZ is normalised to 1: all spaces here are relative to it.

@@ -1,5 +1,6 @@
 //! Base colours, sampled on the CPU.
 
+use crate::metrics::colour::srgb_to_linear;
 use crate::scene::{Lookup, Scene, Texture};
 use glam::{Vec2, Vec4};
 use std::borrow::Cow;
@@ -33,18 +34,10 @@ impl<'s> Surfaces<'s> {
                 });
             }
         }
-        let linear = std::array::from_fn(|i| {
-            let c = i as f32 / 255.0;
-            if c <= 0.04045 {
-                c / 12.92
-            } else {
-                ((c + 0.055) / 1.055).powf(2.4)
-            }
-        });
         Surfaces {
             scene,
             textures,
-            linear,
+            linear: std::array::from_fn(|i| srgb_to_linear(i as f32 / 255.0)),
         }
     }
 

@@ -137,8 +137,3 @@ pub(crate) fn check(rotation: f32, intensity: f32) -> Result<(), String> {
     }
     Ok(())
 }
-
-/// Relative luminance (ITU-R BT.709).
-pub(crate) fn luminance(c: [f32; 3]) -> f64 {
-    0.2126 * f64::from(c[0]) + 0.7152 * f64::from(c[1]) + 0.0722 * f64::from(c[2])
-}

@@ -2,7 +2,8 @@
 //! chance, which gives noise and no sharp shadows. Methods therefore get the sun as a directional
 //! light and the map without it.
 
-use super::{Level, direction, luminance};
+use super::{Level, direction};
+use crate::metrics::colour::luminance;
 use glam::{DVec3, Vec3};
 
 /// Texels of a sun are brighter than this multiple of the mean over all directions,

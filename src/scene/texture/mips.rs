@@ -7,7 +7,7 @@ use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::{Texture, TextureFormat, first_level_rgba};
-use crate::metrics::colour::srgb_to_linear;
+use crate::metrics::colour::{linear_to_srgb, srgb_to_linear};
 
 /// Property that a mip level preserves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,15 +25,7 @@ static SRGB_TO_LINEAR: LazyLock<[f32; 256]> =
 
 /// sRGB byte by linear value in steps of 1/16384, fine enough for a lossless round trip of bytes.
 static LINEAR_TO_SRGB: LazyLock<Vec<u8>> = LazyLock::new(|| {
-    let encode = |i: usize| {
-        let l = i as f32 / 16384.0;
-        let c = if l <= 0.003_130_8 {
-            l * 12.92
-        } else {
-            1.055 * l.powf(1.0 / 2.4) - 0.055
-        };
-        (c * 255.0 + 0.5) as u8
-    };
+    let encode = |i| (linear_to_srgb(f64::from(i) / 16384.0) * 255.0 + 0.5) as u8;
     (0..=16384).map(encode).collect()
 });
 
