@@ -15,7 +15,7 @@ pub use warm_up::WarmUp;
 use crate::experiment::Experiment;
 use crate::graph::run::FrameTimes;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session, parts_of};
-use crate::measure::reference::Reference;
+use crate::measure::reference::{Reference, ReferencePart};
 use crate::metrics::{Compared, Linear, Metric, Noise, Scores};
 use crate::results::stats::{self, Stats};
 use crate::scene::Scene;
@@ -73,6 +73,30 @@ impl Point {
             relmse: of(&self.noise),
             structure: of(&self.structure_noise),
         }
+    }
+
+    /// Adds the scores of a component and the noise of its reference.
+    fn add(
+        &mut self,
+        name: String,
+        light: &Linear,
+        expected: &ReferencePart,
+        scored: Scored,
+    ) -> Result<(), String> {
+        let compared = Compared::new(light, &expected.mean).map_err(|e| e.0)?;
+        let scores = match scored {
+            Scored::All => compared.scores(None),
+            Scored::One(_, metric) => compared.scores_by(metric),
+        };
+        let scores = scores.ok_or("no pixel is a number in both pictures")?;
+        self.scores.insert(name.clone(), scores);
+        // The noise of black references is undefined, and JSON has no NaN.
+        if expected.noise.structure.is_finite() {
+            self.structure_noise
+                .insert(name.clone(), expected.noise.structure);
+        }
+        self.noise.insert(name, expected.noise.relmse);
+        Ok(())
     }
 }
 
@@ -140,15 +164,10 @@ pub fn measure(
         warmup,
         warnings,
     );
-    let picture = loaded
-        .graph
-        .output
-        .as_ref()
-        .map(|name| session.texels(name, 0, 0))
-        .transpose()?;
-    let picture = picture
-        .map(|texels| pictures::thumbnail(&texels))
-        .transpose()?;
+    let picture = match &loaded.graph.output {
+        Some(name) => Some(pictures::thumbnail(&session.texels(name, 0, 0)?)?),
+        None => None,
+    };
     warm.timed = Some(session.share());
     let parts = match references {
         [] => BTreeMap::new(),
@@ -175,28 +194,14 @@ pub fn measure(
             else {
                 continue;
             };
-            let wrong = |why: &str| {
-                LabError::Request(format!("the part '{part}' cannot be compared: {why}"))
-            };
-            let compared = Compared::new(light, &expected.mean).map_err(|e| wrong(&e.0))?;
-            let scores = match scored {
-                Scored::All => compared.scores(None),
-                Scored::One(_, metric) => compared.scores_by(metric),
-            };
-            let scores = scores.ok_or_else(|| wrong("no pixel is a number in both pictures"))?;
             let name = if number == 0 {
                 part.clone()
             } else {
                 format!("{part}, {bounces} bounces")
             };
-            point.scores.insert(name.clone(), scores);
-            // The noise of black references is undefined, and JSON has no NaN.
-            if expected.noise.structure.is_finite() {
-                point
-                    .structure_noise
-                    .insert(name.clone(), expected.noise.structure);
-            }
-            point.noise.insert(name, expected.noise.relmse);
+            point.add(name, light, expected, scored).map_err(|why| {
+                LabError::Request(format!("the part '{part}' cannot be compared: {why}"))
+            })?;
             if number == 0 && part == "total" {
                 error_map = Some(pictures::error_map(light, &expected.mean)?);
                 shown = Some(pictures::displayed(&expected.mean)?);

@@ -2,8 +2,8 @@
 
 use super::surface::{Surface, Swapchain, WHOLE};
 use super::{
-    Buffer, FrameSlot, Gpu, Image, ImageDesc, Result, Sampler, SamplerDesc, View, ViewDesc,
-    VulkanError, vk,
+    Buffer, Commands, FrameSlot, Gpu, Image, ImageDesc, Result, Sampler, SamplerDesc, View,
+    ViewDesc, VulkanError, vk,
 };
 use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_ash_renderer::allocator::DefaultAllocator;
@@ -20,6 +20,15 @@ enum Target {
         stale: bool,
     },
     Image(Option<(Arc<Image>, View)>),
+}
+
+/// An image to draw to.
+struct Drawable {
+    image: vk::Image,
+    view: vk::ImageView,
+    extent: vk::Extent2D,
+    /// Signalled when a window's image has been drawn.
+    drawn: Option<vk::Semaphore>,
 }
 
 /// Frames in flight.
@@ -269,7 +278,7 @@ impl Painter {
         for p in pixels {
             self.fit_picture(p)?;
         }
-        let Some((image, view, extent, swap)) = self.acquire(size, slot)? else {
+        let Some(target) = self.acquire(size, slot)? else {
             self.free_textures(&textures)?;
             return Ok(false);
         };
@@ -291,61 +300,37 @@ impl Painter {
             reads,
         } = &mut slots[slot];
         let mut result = Ok(());
-        let to_present = swap.is_some();
-        let semaphores = swap.map(|drawn| (*acquired, drawn));
+        let semaphores = target.drawn.map(|drawn| (*acquired, drawn));
         commands.submit_between(semaphores, |commands| {
             commands.timestamp();
-            for p in pixels {
-                let Some(Picture {
-                    image: Some((image, _)),
-                    ..
-                }) = pictures.get(p.picture)
-                else {
-                    continue;
-                };
-                match p.source {
-                    PixelSource::Bytes(_) => {
-                        if let Some(Some(staging)) = staging.get(p.picture) {
-                            commands.refill(image, staging);
-                        }
-                    }
-                    PixelSource::Shared(theirs) => {
-                        if let Some((_, ours)) =
-                            reads.iter().find(|(from, _)| Arc::ptr_eq(from, theirs))
-                        {
-                            commands.take_over(ours);
-                            commands.refill(image, ours);
-                        }
-                    }
-                }
-            }
+            refill_pictures(commands, pictures, pixels, staging, reads);
             commands.timestamp();
             commands.attach(
-                image,
+                target.image,
                 vk::ImageLayout::UNDEFINED,
                 vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
             );
             let color = [vk::RenderingAttachmentInfo::default()
-                .image_view(view)
+                .image_view(target.view)
                 .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
                 .load_op(vk::AttachmentLoadOp::CLEAR)
                 .store_op(vk::AttachmentStoreOp::STORE)];
             let info = vk::RenderingInfo::default()
-                .render_area(vk::Rect2D::default().extent(extent))
+                .render_area(vk::Rect2D::default().extent(target.extent))
                 .layer_count(1)
                 .color_attachments(&color);
             // SAFETY: the command buffer is recording, and view and image live until the frame has
             // finished.
             unsafe { gpu.device.cmd_begin_rendering(commands.handle, &info) };
-            result = renderer.cmd_draw(commands.handle, extent, scale, primitives);
+            result = renderer.cmd_draw(commands.handle, target.extent, scale, primitives);
             // SAFETY: as above.
             unsafe { gpu.device.cmd_end_rendering(commands.handle) };
-            let end = if to_present {
+            let end = if target.drawn.is_some() {
                 vk::ImageLayout::PRESENT_SRC_KHR
             } else {
                 vk::ImageLayout::TRANSFER_SRC_OPTIMAL
             };
-            commands.attach(image, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, end);
+            commands.attach(target.image, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, end);
             commands.timestamp();
         })?;
         result.map_err(renderer_error)?;
@@ -480,112 +465,103 @@ impl Painter {
         Ok(())
     }
 
-    /// The image to draw to and, for a window, the semaphore to signal.
-    #[expect(clippy::type_complexity, reason = "used once, by paint")]
-    fn acquire(
-        &mut self,
-        size: (u32, u32),
-        slot: usize,
-    ) -> Result<
-        Option<(
-            vk::Image,
-            vk::ImageView,
-            vk::Extent2D,
-            Option<vk::Semaphore>,
-        )>,
-    > {
-        let acquired = self.slots[slot].acquired;
-        match &mut self.target {
-            Target::Image(image) => {
-                let fits = image
-                    .as_ref()
-                    .is_some_and(|(i, _)| i.desc.extent == [size.0, size.1, 1]);
-                if !fits {
-                    for slot in &mut self.slots {
-                        slot.commands.wait()?;
-                    }
-                    let color = vk::ImageUsageFlags::COLOR_ATTACHMENT;
-                    let usage = color | vk::ImageUsageFlags::TRANSFER_SRC;
-                    let size = [size.0, size.1];
-                    *image = Some(plain_image(
-                        &self.gpu,
-                        "interface",
-                        size,
-                        self.format,
-                        usage,
-                        color,
-                    )?);
-                }
-                let extent = vk::Extent2D {
-                    width: size.0,
-                    height: size.1,
-                };
-                Ok(image
-                    .as_ref()
-                    .map(|(image, view)| (image.handle, view.handle, extent, None)))
+    /// The next image to draw to; `None` if the window provides none now.
+    fn acquire(&mut self, size: (u32, u32), slot: usize) -> Result<Option<Drawable>> {
+        match self.target {
+            Target::Image(_) => self.offscreen_image(size),
+            Target::Window { .. } => self.window_image(size, slot),
+        }
+    }
+
+    /// The image of an offscreen painter, recreated after a change of size.
+    fn offscreen_image(&mut self, size: (u32, u32)) -> Result<Option<Drawable>> {
+        let Target::Image(image) = &mut self.target else {
+            return Ok(None);
+        };
+        let fits = image
+            .as_ref()
+            .is_some_and(|(i, _)| i.desc.extent == [size.0, size.1, 1]);
+        if !fits {
+            for slot in &mut self.slots {
+                slot.commands.wait()?;
             }
-            Target::Window {
-                surface,
-                swapchain,
-                stale,
-            } => {
-                for _ in 0..3 {
-                    if *stale || swapchain.is_none() {
-                        *swapchain = None;
-                        *swapchain = match Swapchain::new(&self.gpu, surface, size) {
-                            Err(VulkanError::Code {
-                                code: vk::Result::ERROR_SURFACE_LOST_KHR,
-                                ..
-                            }) => {
-                                surface.renew()?;
-                                Swapchain::new(&self.gpu, surface, size)?
-                            }
-                            made => made?,
-                        };
-                        *stale = false;
-                    }
-                    let Some(chain) = swapchain else {
-                        return Ok(None);
-                    };
-                    // A hidden window may provide no image for a long time; the timeout keeps the
-                    // program responsive [ns].
-                    let timeout = 100_000_000;
-                    // SAFETY: the semaphore is unused: its last frame has been waited for.
-                    let next = unsafe {
-                        chain.loader.acquire_next_image(
-                            chain.handle,
-                            timeout,
-                            acquired,
-                            vk::Fence::null(),
-                        )
-                    };
-                    match next {
-                        Ok((index, suboptimal)) => {
-                            *stale = suboptimal;
-                            self.acquired_image = Some(index);
-                            let i = index as usize;
-                            return Ok(Some((
-                                chain.images[i],
-                                chain.views[i],
-                                chain.extent,
-                                Some(chain.drawn[i]),
-                            )));
-                        }
-                        Err(vk::Result::TIMEOUT | vk::Result::NOT_READY) => return Ok(None),
-                        Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => *stale = true,
-                        Err(vk::Result::ERROR_SURFACE_LOST_KHR) => {
-                            *swapchain = None;
-                            surface.renew()?;
-                            *stale = true;
-                        }
-                        Err(code) => {
-                            return Err(VulkanError::at("get the window's next image")(code));
-                        }
-                    }
+            let color = vk::ImageUsageFlags::COLOR_ATTACHMENT;
+            let usage = color | vk::ImageUsageFlags::TRANSFER_SRC;
+            let size = [size.0, size.1];
+            *image = Some(plain_image(
+                &self.gpu,
+                "interface",
+                size,
+                self.format,
+                usage,
+                color,
+            )?);
+        }
+        Ok(image.as_ref().map(|(image, view)| Drawable {
+            image: image.handle,
+            view: view.handle,
+            extent: vk::Extent2D {
+                width: size.0,
+                height: size.1,
+            },
+            drawn: None,
+        }))
+    }
+
+    /// The next image of the window; recreates an outdated swapchain.
+    fn window_image(&mut self, size: (u32, u32), slot: usize) -> Result<Option<Drawable>> {
+        let acquired = self.slots[slot].acquired;
+        let Target::Window {
+            surface,
+            swapchain,
+            stale,
+        } = &mut self.target
+        else {
+            return Ok(None);
+        };
+        for _ in 0..3 {
+            if *stale || swapchain.is_none() {
+                *swapchain = None;
+                *swapchain = new_swapchain(&self.gpu, surface, size)?;
+                *stale = false;
+            }
+            let Some(chain) = swapchain else {
+                return Ok(None);
+            };
+            // A hidden window may provide no image for a long time; the timeout keeps the
+            // program responsive [ns].
+            let timeout = 100_000_000;
+            // SAFETY: the semaphore is unused: its last frame has been waited for.
+            let next = unsafe {
+                chain
+                    .loader
+                    .acquire_next_image(chain.handle, timeout, acquired, vk::Fence::null())
+            };
+            match next {
+                Ok((index, suboptimal)) => {
+                    *stale = suboptimal;
+                    self.acquired_image = Some(index);
+                    let i = index as usize;
+                    return Ok(Some(Drawable {
+                        image: chain.images[i],
+                        view: chain.views[i],
+                        extent: chain.extent,
+                        drawn: Some(chain.drawn[i]),
+                    }));
                 }
-                Ok(None)
+                Err(vk::Result::TIMEOUT | vk::Result::NOT_READY) => return Ok(None),
+                Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => *stale = true,
+                Err(vk::Result::ERROR_SURFACE_LOST_KHR) => {
+                    *swapchain = None;
+                    surface.renew()?;
+                    *stale = true;
+                }
+                Err(code) => {
+                    return Err(VulkanError::at("get the window's next image")(code));
+                }
             }
         }
+        Ok(None)
     }
 
     fn present(&mut self) -> Result<()> {
@@ -657,6 +633,56 @@ impl Painter {
             [w, h],
             target.bytes()[..usize::try_from(size).unwrap_or(0)].to_vec(),
         ))
+    }
+}
+
+/// Copies new pixels to the images of their pictures.
+fn refill_pictures(
+    commands: &mut Commands<'_>,
+    pictures: &[Picture],
+    pixels: &[Pixels<'_>],
+    staging: &[Option<Buffer>],
+    reads: &[(Arc<Buffer>, Arc<Buffer>)],
+) {
+    for p in pixels {
+        let Some(Picture {
+            image: Some((image, _)),
+            ..
+        }) = pictures.get(p.picture)
+        else {
+            continue;
+        };
+        match p.source {
+            PixelSource::Bytes(_) => {
+                if let Some(Some(staging)) = staging.get(p.picture) {
+                    commands.refill(image, staging);
+                }
+            }
+            PixelSource::Shared(theirs) => {
+                if let Some((_, ours)) = reads.iter().find(|(from, _)| Arc::ptr_eq(from, theirs)) {
+                    commands.take_over(ours);
+                    commands.refill(image, ours);
+                }
+            }
+        }
+    }
+}
+
+/// A swapchain for the window's surface, which is recreated if it was lost.
+fn new_swapchain(
+    gpu: &Arc<Gpu>,
+    surface: &mut Surface,
+    size: (u32, u32),
+) -> Result<Option<Swapchain>> {
+    match Swapchain::new(gpu, surface, size) {
+        Err(VulkanError::Code {
+            code: vk::Result::ERROR_SURFACE_LOST_KHR,
+            ..
+        }) => {
+            surface.renew()?;
+            Swapchain::new(gpu, surface, size)
+        }
+        made => made,
     }
 }
 

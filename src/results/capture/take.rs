@@ -10,8 +10,10 @@ use crate::graph::Graph;
 use crate::graph::link::Linked;
 use crate::graph::link::generated;
 use crate::graph::load::Folders;
-use crate::lab::{Lab, LabError, Loaded, camera_of, no_texture};
+use crate::graph::param::Params;
+use crate::lab::{Lab, LabError, Loaded, Texels, camera_of, no_texture};
 use crate::results::picture;
+use crate::results::stats::Stats;
 use crate::results::timers::{Rows, Timers, stamped};
 use crate::scene::Scene;
 use crate::shader::ShaderCompiler;
@@ -122,48 +124,16 @@ pub fn take(
         (what.frames, what.step),
         |graph| images_of(graph, &what.resources),
     )?;
-    for (image, texels) in &images {
-        let file = path.join(&image.file);
-        let bytes = if image.file.ends_with(".png") {
-            picture::png(texels)?
-        } else {
-            picture::exr(texels)?
-        };
-        write(&file, &bytes)?;
-    }
+    write_pictures(path, &images)?;
     if what.timers != Rows::None
         && let Some((_, texels)) = images.iter().find(|i| i.0.file == "picture.png")
     {
-        let medians = stats.passes.iter().filter_map(|p| {
-            Some((
-                graph
-                    .passes
-                    .iter()
-                    .position(|x| x.value.name.value == p.name)?,
-                p.gpu_ms.median,
-            ))
-        });
         let params = resolved.params_over(&graph.params)?;
-        let size = experiment.size.into();
-        let timers = Timers::new(
-            what.timers,
-            &graph,
-            &params,
-            &stats.device.name,
-            size,
-            &medians.collect::<Vec<_>>(),
-        );
-        write(
-            &path.join("timers.png"),
-            &picture::png(&stamped(&lab.gpu, texels, &timers)?)?,
-        )?;
+        let timers = timers_of(what.timers, &graph, &params, &stats, experiment.size);
+        let stamped = stamped(&lab.gpu, texels, &timers)?;
+        write(&path.join("timers.png"), &picture::png(&stamped)?)?;
     }
     write(&path.join("stats.json"), &json(&stats)?)?;
-    let mut files = BTreeMap::new();
-    for file in files_below(path).map_err(|e| failed(path, e))? {
-        let hash = hash_file(&path.join(&file)).map_err(|e| failed(path, e))?;
-        files.insert(file, hash);
-    }
     let manifest = Manifest {
         schema: SCHEMA.into(),
         version: stats.version.clone(),
@@ -181,7 +151,7 @@ pub fn take(
         frames,
         step: what.step,
         images: images.into_iter().map(|i| i.0).collect(),
-        files,
+        files: hashes(path)?,
     };
     write(&path.join(MANIFEST), &json(&manifest)?)?;
     make_readable(path).map_err(|e| failed(path, e))?;
@@ -189,6 +159,46 @@ pub fn take(
     // The folder has been renamed, so there is nothing left to clean up.
     let _ = partial.keep();
     Ok(target)
+}
+
+fn write_pictures(folder: &Path, images: &[(Image, Texels)]) -> Result<(), LabError> {
+    for (image, texels) in images {
+        let bytes = if image.file.ends_with(".png") {
+            picture::png(texels)?
+        } else {
+            picture::exr(texels)?
+        };
+        write(&folder.join(&image.file), &bytes)?;
+    }
+    Ok(())
+}
+
+/// The timing overlay with the median times of each pass.
+fn timers_of(
+    rows: Rows,
+    graph: &Graph,
+    params: &Params,
+    stats: &Stats,
+    size: (u32, u32),
+) -> Timers {
+    let number = |name: &str| graph.passes.iter().position(|p| p.value.name.value == name);
+    let medians: Vec<_> = stats
+        .passes
+        .iter()
+        .filter_map(|p| Some((number(&p.name)?, p.gpu_ms.median)))
+        .collect();
+    let device = &stats.device.name;
+    Timers::new(rows, graph, params, device, size.into(), &medians)
+}
+
+/// SHA-256 of every file below a folder, by relative path.
+fn hashes(folder: &Path) -> Result<BTreeMap<String, String>, LabError> {
+    let files = files_below(folder).map_err(|e| failed(folder, e))?;
+    let hash = |file: String| {
+        let hash = hash_file(&folder.join(&file)).map_err(|e| failed(folder, e))?;
+        Ok((file, hash))
+    };
+    files.into_iter().map(hash).collect()
 }
 
 /// Renames a finished capture. Renaming never replaces a folder that has files.

@@ -64,32 +64,7 @@ fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene, SceneError
         name: file.name.clone().unwrap_or(name),
         ..Scene::default()
     };
-    let (mut sky, mut picture) = (None, None);
-    // Each model is read once; its placements share meshes.
-    let mut added: BTreeMap<(bool, &str, Option<&str>), Added> = BTreeMap::new();
-    for (i, entry) in file.models.iter().enumerate() {
-        let named = entry
-            .builtin
-            .as_deref()
-            .or(entry.file.as_deref())
-            .unwrap_or_default();
-        let share = progress.share(i, file.models.len() + 1);
-        let known = match added.entry((entry.builtin.is_some(), named, entry.clip.as_deref())) {
-            Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(new) => new.insert(compose::add(
-                &mut scene,
-                load_model(entry, path, text, share)?,
-            )),
-        };
-        if i == 0 {
-            let own = known.sky();
-            (sky, picture) = (Some(own.0), own.1);
-        }
-        check_placed(&known.model, known.bounds, entry.transform).map_err(|message| {
-            in_file(path, text, named, format!("'{named}', placed: {message}"))
-        })?;
-        compose::add_placed(&mut scene, &known.model, entry);
-    }
+    let first_sky = add_models(&mut scene, &file, path, text, progress)?;
     progress
         .share(file.models.len(), file.models.len() + 1)
         .step(&scene.name, 0.0)?;
@@ -114,8 +89,9 @@ fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene, SceneError
         }
         // A sky radiance in the file replaces the first model's sky and environment map.
         None => {
+            let (sky, picture) = first_sky.unwrap_or((defaults::SKY, None));
             scene.environment = picture.filter(|_| file.sky.is_none());
-            scene.sky = file.sky.map(|s| s.0).or(sky).unwrap_or(defaults::SKY);
+            scene.sky = file.sky.map_or(sky, |s| s.0);
         }
     }
     for light in &file.lights {
@@ -131,6 +107,41 @@ fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene, SceneError
         scene.cameras.insert("default".into(), camera);
     }
     Ok(scene)
+}
+
+/// Adds the models of a scene file. Returns the sky of the first one.
+fn add_models(
+    scene: &mut Scene,
+    file: &SceneFile,
+    path: &Path,
+    text: &str,
+    progress: Progress,
+) -> Result<Option<(Vec3, Option<Environment>)>, SceneError> {
+    let mut first_sky = None;
+    // Each model is read once; its placements share meshes.
+    let mut added: BTreeMap<(bool, &str, Option<&str>), Added> = BTreeMap::new();
+    for (i, entry) in file.models.iter().enumerate() {
+        let named = entry
+            .builtin
+            .as_deref()
+            .or(entry.file.as_deref())
+            .unwrap_or_default();
+        let share = progress.share(i, file.models.len() + 1);
+        let known = match added.entry((entry.builtin.is_some(), named, entry.clip.as_deref())) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
+                new.insert(compose::add(scene, load_model(entry, path, text, share)?))
+            }
+        };
+        if i == 0 {
+            first_sky = Some(known.sky());
+        }
+        check_placed(&known.model, known.bounds, entry.transform).map_err(|message| {
+            in_file(path, text, named, format!("'{named}', placed: {message}"))
+        })?;
+        compose::add_placed(scene, &known.model, entry);
+    }
+    Ok(first_sky)
 }
 
 fn open_environment(

@@ -1,6 +1,7 @@
 //! The node hierarchy, flattened: instances, lights and cameras in the world.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use ::gltf::camera::Projection;
 use ::gltf::{Document, Node};
@@ -13,7 +14,7 @@ use super::lights;
 use crate::scene::defaults::least_reach;
 use crate::scene::motion::Rigs;
 use crate::scene::warnings::Warnings;
-use crate::scene::{Camera, Instance, Mover, Scene};
+use crate::scene::{Camera, Instance, Mover, Scene, Track};
 
 /// A node to visit with its parent's frame.
 struct Visit<'a> {
@@ -40,6 +41,33 @@ pub(super) struct Placed<'a> {
     depths: Vec<usize>,
     /// Instances of nodes with a skin or morph targets.
     pub deforming: Vec<(usize, Node<'a>)>,
+}
+
+impl Placed<'_> {
+    /// Adds a moving node and returns the index of its mover.
+    fn add_mover(
+        &mut self,
+        parent: Option<u32>,
+        placed: Mat4,
+        track: Arc<Track>,
+        name: &str,
+    ) -> Result<u32, String> {
+        let depth = parent
+            .and_then(|m| self.depths.get(m as usize))
+            .map_or(1, |depth| depth + 1);
+        if depth > MAX_DEPTH {
+            return Err(format!(
+                "node '{name}' moves in more than {MAX_DEPTH} moving nodes"
+            ));
+        }
+        self.depths.push(depth);
+        self.scene.movers.push(Mover {
+            parent,
+            placed,
+            track,
+        });
+        Ok(self.scene.movers.len() as u32 - 1)
+    }
 }
 
 /// Instances, lights and cameras of the default scene, or of the first one.
@@ -90,21 +118,8 @@ pub(super) fn place<'a>(
             ));
         }
         if let Some(track) = tracks.of(&node) {
-            let depth = mover
-                .and_then(|m| placed.depths.get(m as usize))
-                .map_or(1, |depth| depth + 1);
-            if depth > MAX_DEPTH {
-                return Err(format!(
-                    "node '{name}' moves in more than {MAX_DEPTH} moving nodes"
-                ));
-            }
-            placed.depths.push(depth);
-            placed.scene.movers.push(Mover {
-                parent: mover,
-                placed: above,
-                track,
-            });
-            (mover, local) = (Some(placed.scene.movers.len() as u32 - 1), Mat4::IDENTITY);
+            mover = Some(placed.add_mover(mover, above, track, &name)?);
+            local = Mat4::IDENTITY;
         }
         placed.frames.insert(node.index(), (mover, local));
         let visible = visible && is_visible(&node);
@@ -121,36 +136,14 @@ pub(super) fn place<'a>(
                 (document, buffers),
             )?;
         }
-        // Lights and cameras keep their transform at time 0.
-        let moves = mover.is_some() && (node.light().is_some() || node.camera().is_some());
-        if moves {
-            warnings.add(
-                "lights and cameras of moving nodes stay where they are at 0 s",
-                &name,
-            );
-        }
-        let start = if moves {
-            placed.scene.moved(mover, local, 0.0)
-        } else {
-            local
-        };
-        if let Some(light) = node.light().filter(|_| visible) {
-            match lights::read(&light, &name, start, warnings) {
-                Ok(light) => placed.scene.lights.push(light),
-                Err(why) => warnings.add(format!("lights that have {why} are left out"), &name),
-            }
-        }
-        if let Some(camera) = node.camera() {
-            match read_camera(&camera.projection(), start) {
-                Some(view) => {
-                    placed
-                        .scene
-                        .cameras
-                        .insert(camera.name().unwrap_or(&name).to_owned(), view);
-                }
-                None => warnings.add("cameras that are no usable perspective are left out", &name),
-            }
-        }
+        add_light_and_camera(
+            &mut placed.scene,
+            &node,
+            (mover, local),
+            &name,
+            visible,
+            warnings,
+        );
         let children: Vec<Visit> = node
             .children()
             .map(|node| Visit {
@@ -163,6 +156,46 @@ pub(super) fn place<'a>(
         stack.extend(children.into_iter().rev());
     }
     Ok(placed)
+}
+
+/// Adds the light and the camera of a node.
+fn add_light_and_camera(
+    scene: &mut Scene,
+    node: &Node,
+    (mover, local): (Option<u32>, Mat4),
+    name: &str,
+    visible: bool,
+    warnings: &mut Warnings,
+) {
+    // Lights and cameras keep their transform at time 0.
+    let moves = mover.is_some() && (node.light().is_some() || node.camera().is_some());
+    if moves {
+        warnings.add(
+            "lights and cameras of moving nodes stay where they are at 0 s",
+            name,
+        );
+    }
+    let start = if moves {
+        scene.moved(mover, local, 0.0)
+    } else {
+        local
+    };
+    if let Some(light) = node.light().filter(|_| visible) {
+        match lights::read(&light, name, start, warnings) {
+            Ok(light) => scene.lights.push(light),
+            Err(why) => warnings.add(format!("lights that have {why} are left out"), name),
+        }
+    }
+    if let Some(camera) = node.camera() {
+        match read_camera(&camera.projection(), start) {
+            Some(view) => {
+                scene
+                    .cameras
+                    .insert(camera.name().unwrap_or(name).to_owned(), view);
+            }
+            None => warnings.add("cameras that are no usable perspective are left out", name),
+        }
+    }
 }
 
 /// Instances of a node's mesh, in a moving frame or in the world.
