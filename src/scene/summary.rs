@@ -95,6 +95,27 @@ impl Scene {
             )?;
         }
 
+        self.write_materials(out)?;
+        self.write_textures(out)?;
+        self.write_lights(out)?;
+        writeln!(out, "\ncameras    {}", self.cameras.len())?;
+        for (name, camera) in &self.cameras {
+            writeln!(
+                out,
+                "  {name}  eye {:.2} toward {:.2}, {} deg",
+                camera.eye, camera.target, camera.fov_y
+            )?;
+        }
+        if !self.warnings.is_empty() {
+            writeln!(out, "\nwarnings   {}", self.warnings.len())?;
+            for warning in &self.warnings {
+                writeln!(out, "  {warning}")?;
+            }
+        }
+        Ok(())
+    }
+
+    fn write_materials(&self, out: &mut String) -> std::fmt::Result {
         writeln!(out, "\nmaterials  {}", self.materials.len())?;
         let width = self
             .materials
@@ -124,6 +145,10 @@ impl Scene {
                 "  {name:width$}  {r:.3} {g:.3} {b:.3}  {roughness:.2}  {metallic:.2}  {notes}"
             )?;
         }
+        Ok(())
+    }
+
+    fn write_textures(&self, out: &mut String) -> std::fmt::Result {
         let bytes = |texture: &Texture| texture.mips.iter().map(Vec::len).sum::<usize>();
         let total = self.textures.iter().map(bytes).sum::<usize>() as f64 / f64::from(1 << 20);
         writeln!(out, "\ntextures   {} ({total:.1} MiB)", self.textures.len())?;
@@ -141,6 +166,10 @@ impl Scene {
                 mips.len()
             )?;
         }
+        Ok(())
+    }
+
+    fn write_lights(&self, out: &mut String) -> std::fmt::Result {
         let lights = self.all_lights();
         writeln!(out, "\nlights     {}", lights.len())?;
         for light in &lights {
@@ -158,20 +187,6 @@ impl Scene {
                 ),
             };
             writeln!(out, "  {}  {about}, {shadow}", light.name)?;
-        }
-        writeln!(out, "\ncameras    {}", self.cameras.len())?;
-        for (name, camera) in &self.cameras {
-            writeln!(
-                out,
-                "  {name}  eye {:.2} toward {:.2}, {} deg",
-                camera.eye, camera.target, camera.fov_y
-            )?;
-        }
-        if !self.warnings.is_empty() {
-            writeln!(out, "\nwarnings   {}", self.warnings.len())?;
-            for warning in &self.warnings {
-                writeln!(out, "  {warning}")?;
-            }
         }
         Ok(())
     }

@@ -349,26 +349,11 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
             limits: core.limits,
             heap,
             features: Features {
-                conservative_rasterization: has(&extensions, ext::conservative_rasterization::NAME),
-                geometry: have.geometry_shader == vk::TRUE,
-                tessellation: have.tessellation_shader == vk::TRUE,
-                fragment_stores: have.fragment_stores_and_atomics == vk::TRUE,
-                vertex_stores: have.vertex_pipeline_stores_and_atomics == vk::TRUE,
-                clip_distance: have.shader_clip_distance == vk::TRUE,
-                depth_clamp: have.depth_clamp == vk::TRUE,
-                bc: have.texture_compression_bc == vk::TRUE,
                 // Anisotropic filtering costs software devices seconds per frame.
                 anisotropy: have.sampler_anisotropy == vk::TRUE
                     && core.device_type != vk::PhysicalDeviceType::CPU,
-                write_without_format: have.shader_storage_image_write_without_format == vk::TRUE,
-                multi_draw_indirect: have.multi_draw_indirect == vk::TRUE
-                    && have.draw_indirect_first_instance == vk::TRUE,
-                independent_blend: have.independent_blend == vk::TRUE,
-                full_index: have.full_draw_index_uint32 == vk::TRUE,
-                int64_atomics: have.shader_int64 == vk::TRUE
-                    && have12.shader_buffer_int64_atomics == vk::TRUE,
                 shares_memory: super::share::is_supported(instance, physical, &extensions),
-                portability: has(&extensions, khr::portability_subset::NAME),
+                ..features(&have, &have12, &extensions)
             },
             id: DeviceId {
                 device: ids.device_uuid,
@@ -382,6 +367,33 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                 crate::files::hex(&core.pipeline_cache_uuid)
             ),
         }
+    }
+}
+
+/// The optional features that a device reports.
+fn features(
+    have: &vk::PhysicalDeviceFeatures,
+    have12: &vk::PhysicalDeviceVulkan12Features,
+    extensions: &[vk::ExtensionProperties],
+) -> Features {
+    Features {
+        conservative_rasterization: has(extensions, ext::conservative_rasterization::NAME),
+        geometry: have.geometry_shader == vk::TRUE,
+        tessellation: have.tessellation_shader == vk::TRUE,
+        fragment_stores: have.fragment_stores_and_atomics == vk::TRUE,
+        vertex_stores: have.vertex_pipeline_stores_and_atomics == vk::TRUE,
+        clip_distance: have.shader_clip_distance == vk::TRUE,
+        depth_clamp: have.depth_clamp == vk::TRUE,
+        bc: have.texture_compression_bc == vk::TRUE,
+        write_without_format: have.shader_storage_image_write_without_format == vk::TRUE,
+        multi_draw_indirect: have.multi_draw_indirect == vk::TRUE
+            && have.draw_indirect_first_instance == vk::TRUE,
+        independent_blend: have.independent_blend == vk::TRUE,
+        full_index: have.full_draw_index_uint32 == vk::TRUE,
+        int64_atomics: have.shader_int64 == vk::TRUE
+            && have12.shader_buffer_int64_atomics == vk::TRUE,
+        portability: has(extensions, khr::portability_subset::NAME),
+        ..Features::default()
     }
 }
 

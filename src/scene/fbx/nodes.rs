@@ -95,36 +95,15 @@ pub(super) fn place<'a>(
                 .instances
                 .push(instance(node, mesh as u32, &name, (mover, here))?);
         }
-        // Lights and cameras keep their transform at time 0.
-        let moves = mover.is_some() && (node.light.is_some() || node.camera.is_some());
-        let start = match moves {
-            true => DAffine3::from_mat4(placed.moved(mover, placement(&here), 0.0).as_dmat4()),
-            false => here,
-        };
-        if let Some(light) = node
-            .light
-            .as_ref()
-            .filter(|light| visible && light.cast_light)
-        {
-            match lights::read(light, file.metadata.exporter, &name, &start, warnings) {
-                Ok(light) => placed.lights.push(light),
-                Err(why) => warnings.add(format!("lights that have {why} are left out"), &name),
-            }
-        }
-        if let Some(from) = node.camera.as_ref() {
-            match camera(from, &start, file.settings.original_unit_meters) {
-                Some(view) => {
-                    placed.cameras.insert(name.clone(), view);
-                }
-                None => warnings.add("cameras that are no usable perspective are left out", &name),
-            }
-        }
-        if moves {
-            warnings.add(
-                "lights and cameras of moving nodes stay where they are at 0 s",
-                &name,
-            );
-        }
+        add_light_and_camera(
+            &mut placed,
+            file,
+            node,
+            (mover, here),
+            &name,
+            visible,
+            warnings,
+        );
         let children = node.children.as_ref();
         // The children of a LOD group are alternatives; the first is the finest.
         let children = if node.attrib_type == ElementType::LodGroup && children.len() > 1 {
@@ -154,6 +133,48 @@ pub(super) fn place<'a>(
         frames,
         rigged,
     })
+}
+
+/// Adds the light and the camera of a node.
+fn add_light_and_camera(
+    scene: &mut Scene,
+    file: &ufbx::Scene,
+    node: &Node,
+    (mover, here): (Option<u32>, DAffine3),
+    name: &str,
+    visible: bool,
+    warnings: &mut Warnings,
+) {
+    // Lights and cameras keep their transform at time 0.
+    let moves = mover.is_some() && (node.light.is_some() || node.camera.is_some());
+    let start = match moves {
+        true => DAffine3::from_mat4(scene.moved(mover, placement(&here), 0.0).as_dmat4()),
+        false => here,
+    };
+    if let Some(light) = node
+        .light
+        .as_ref()
+        .filter(|light| visible && light.cast_light)
+    {
+        match lights::read(light, file.metadata.exporter, name, &start, warnings) {
+            Ok(light) => scene.lights.push(light),
+            Err(why) => warnings.add(format!("lights that have {why} are left out"), name),
+        }
+    }
+    if let Some(from) = node.camera.as_ref() {
+        match camera(from, &start, file.settings.original_unit_meters) {
+            Some(view) => {
+                scene.cameras.insert(name.to_owned(), view);
+            }
+            None => warnings.add("cameras that are no usable perspective are left out", name),
+        }
+    }
+    if moves {
+        warnings.add(
+            "lights and cameras of moving nodes stay where they are at 0 s",
+            name,
+        );
+    }
 }
 
 fn instance(
