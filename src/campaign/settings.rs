@@ -8,7 +8,7 @@ use std::path::Path;
 /// Name and value as RON.
 #[derive(Clone, Debug)]
 pub struct Setting {
-    /// A field of the experiment ([`crate::experiment::FIELDS`]), or a parameter.
+    /// A field of the experiment (`crate::experiment::FIELDS`), or a parameter.
     pub name: Loc<String>,
     /// RON.
     pub text: String,

@@ -159,7 +159,7 @@ pub struct Loc<T> {
 pub struct At {
     /// Index in [`Sources`].
     pub(crate) file: u32,
-    /// Offset from the start of the file [bytes].
+    /// Offset from the start of the file (bytes).
     pub offset: u32,
 }
 

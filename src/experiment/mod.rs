@@ -49,17 +49,17 @@ pub enum CameraChoice {
 pub struct PlacedCamera {
     /// Position, m.
     pub eye: (f32, f32, f32),
-    /// Look-at point [m].
+    /// Look-at point (m).
     pub target: (f32, f32, f32),
     /// Up direction; need not be orthogonal to the view.
     #[serde(default = "y_up")]
     pub up: (f32, f32, f32),
-    /// Vertical field of view [degrees].
+    /// Vertical field of view (degrees).
     pub fov_y: f32,
-    /// Distance of the near plane [m]; derived from the scene's size if absent.
+    /// Distance of the near plane (m); derived from the scene's size if absent.
     #[serde(default)]
     pub near: Option<f32>,
-    /// Distance of the far plane [m]; unused when rendering, kept for export.
+    /// Distance of the far plane (m); unused when rendering, kept for export.
     #[serde(default)]
     pub far: Option<f32>,
 }
@@ -130,9 +130,9 @@ pub struct LightChange {
     pub direction: Option<(f32, f32, f32)>,
     /// Position, m.
     pub position: Option<(f32, f32, f32)>,
-    /// Half-angle of full intensity of a spot [degrees].
+    /// Half-angle of full intensity of a spot (degrees).
     pub inner: Option<f64>,
-    /// Outer half-angle of a spot [degrees].
+    /// Outer half-angle of a spot (degrees).
     pub outer: Option<f64>,
 }
 
@@ -142,7 +142,7 @@ pub struct LightChange {
 pub struct EnvironmentChange {
     /// HDR or EXR file of another environment map, with default rotation 0 and intensity 1.
     pub file: Option<String>,
-    /// Rotation about y [degrees].
+    /// Rotation about y (degrees).
     pub rotation: Option<f32>,
     /// Factor of the map, not negative; multiplies the experiment's `sky`.
     pub intensity: Option<f32>,
@@ -177,7 +177,7 @@ pub struct Experiment {
     pub camera: CameraChoice,
     /// Width and height in pixels.
     pub size: (u32, u32),
-    /// Animation time [s].
+    /// Animation time (s).
     pub time: f64,
     /// Radiance of the sky, replaces the scene's.
     pub sky: Option<(f32, f32, f32)>,
@@ -191,7 +191,7 @@ pub struct Experiment {
     pub sources: Sources,
 }
 
-/// Largest side of a picture [pixels].
+/// Largest side of a picture (pixels).
 pub(crate) const MAX_SIZE: u32 = 16384;
 
 /// Default picture size.

@@ -62,7 +62,7 @@ pub struct PartComparison {
     pub part: String,
     /// relMSE between the halves of the reference's samples.
     pub noise: Option<f64>,
-    /// Structure error caused by the reference's noise alone [natural log units].
+    /// Structure error caused by the reference's noise alone (natural log units).
     pub structure_noise: Option<f64>,
     /// First and last exposure of HDR-FLIP, stops.
     pub exposures: [f64; 2],

@@ -58,7 +58,7 @@ pub struct Point {
     /// relMSE between the two halves of the reference's samples, by component; smaller scores are
     /// not significant.
     pub noise: BTreeMap<String, f64>,
-    /// Structure error caused by the reference's noise alone, by component [natural log units].
+    /// Structure error caused by the reference's noise alone, by component (natural log units).
     #[serde(default)]
     pub structure_noise: BTreeMap<String, f64>,
     /// Samples per pixel of each reference, by its number of bounces.

@@ -8,7 +8,7 @@ use image::codecs::jpeg::JpegEncoder;
 use image::imageops::{FilterType, resize};
 use image::{ImageBuffer, Rgb, RgbImage};
 
-/// Longest side [pixels]: 200 points with two pictures each stay below 4 MB.
+/// Longest side (pixels): 200 points with two pictures each stay below 4 MB.
 const SIDE: u32 = 256;
 /// JPEG quality, percent.
 const QUALITY: u8 = 82;

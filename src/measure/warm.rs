@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Memory limit of cached references [bytes]: eight of 1920x1080. Evicted ones are read again.
+/// Memory limit of cached references (bytes): eight of 1920x1080. Evicted ones are read again.
 const MAX_REFERENCES: usize = 1 << 30;
 
 /// State that is reused from one measurement to the next: compiled graphs, references, pipelines,

@@ -6,7 +6,7 @@ use crate::vulkan::DeviceInfo;
 /// of work to leave it.
 const LEAST_GPU_MS: f64 = 100.0;
 
-/// Limit of the warm-up [frames].
+/// Limit of the warm-up (frames).
 const MOST_FRAMES: usize = 10_000;
 
 /// Warm-up criterion.
@@ -14,7 +14,7 @@ const MOST_FRAMES: usize = 10_000;
 pub struct WarmUp {
     /// Minimum number of frames.
     pub(crate) frames: usize,
-    /// Minimum GPU time of all warm-up frames [ms].
+    /// Minimum GPU time of all warm-up frames (ms).
     pub gpu_ms: f64,
 }
 
@@ -31,7 +31,7 @@ impl WarmUp {
     }
 
     /// Runs frames until the device is warm and returns their number. `frame` runs one frame and
-    /// returns the GPU time [ms] of the frames finished since.
+    /// returns the GPU time (ms) of the frames finished since.
     pub fn run<E>(self, frame: &mut dyn FnMut() -> Result<f64, E>) -> Result<usize, E> {
         let (mut frames, mut gpu_ms) = (0, 0.0);
         while frames < self.frames || (gpu_ms < self.gpu_ms && frames < MOST_FRAMES) {

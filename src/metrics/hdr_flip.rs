@@ -22,9 +22,9 @@ const TARGET: f64 = 0.85;
 /// Evenly spaced exposures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exposures {
-    /// Exposure at which the brightest pixel of the reference is shown at 0.85 [stops].
+    /// Exposure at which the brightest pixel of the reference is shown at 0.85 (stops).
     pub start: f64,
-    /// Exposure at which its median pixel is shown at 0.85 [stops].
+    /// Exposure at which its median pixel is shown at 0.85 (stops).
     pub stop: f64,
     /// Number of exposures: one per stop and at least 2, or 1 without a range.
     pub count: u32,

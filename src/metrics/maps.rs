@@ -10,7 +10,7 @@ use std::io::Cursor;
 
 /// Decades of relative squared error from the darkest to the brightest colour.
 const DECADES: (f64, f64) = (-4.0, 2.0);
-/// Structure error of the brightest colour [natural log units]: two of a block's four neighbours
+/// Structure error of the brightest colour (natural log units): two of a block's four neighbours
 /// differ by a factor of 3.
 const STRUCTURE: f64 = 0.5;
 

@@ -65,7 +65,7 @@ impl Linear {
 /// relMSE alone: mean (x - r)^2 / (r^2 + 0.01). NaN where a pixel is no number.
 ///
 /// # Errors
-/// Pictures of different sizes, without pixels, or of more than [`MAX_PIXELS`].
+/// Pictures of different sizes, without pixels, or of more than `MAX_PIXELS`.
 pub fn relmse(test: &Linear, reference: &Linear) -> Result<f64, MetricError> {
     relative_distance(test, reference, reference)
 }
@@ -119,7 +119,7 @@ impl Kind {
 /// Errors of a radiance picture against a reference, over the whole frame.
 ///
 /// # Errors
-/// Different or empty sizes; more than [`MAX_PIXELS`]; no pixel that is finite in both.
+/// Different or empty sizes; more than `MAX_PIXELS`; no pixel that is finite in both.
 pub fn scores(test: &Linear, reference: &Linear) -> Result<Scores, MetricError> {
     let compared = Compared::new(test, reference)?;
     compared.scores(None).ok_or_else(no_number)
@@ -137,7 +137,7 @@ pub(crate) fn within_noise(relmse: f64, noise: Option<f64>) -> bool {
 pub struct Compared<'a> {
     test: &'a Linear,
     reference: &'a Linear,
-    /// Luminance up to which a pixel is dark ([`DARK`]).
+    /// Luminance up to which a pixel is dark (`DARK`).
     pub dark: f64,
     flip: OnceLock<Vec<f32>>,
     hdr_flip: OnceLock<(Exposures, Vec<f32>)>,
@@ -148,7 +148,7 @@ impl<'a> Compared<'a> {
     /// Prepares a comparison; both pictures are interpreted as the reference's kind.
     ///
     /// # Errors
-    /// Pictures of different sizes, without pixels, or of more than [`MAX_PIXELS`].
+    /// Pictures of different sizes, without pixels, or of more than `MAX_PIXELS`.
     pub fn new(test: &'a Linear, reference: &'a Linear) -> Result<Compared<'a>, MetricError> {
         check(test, reference)?;
         let dark = dark(test, reference);

@@ -8,16 +8,16 @@ use super::colour::luminance;
 use super::{Linear, MetricError, check, dark, is_finite};
 use rayon::prelude::*;
 
-/// Side of the blocks with averaged luminance [pixels]: four pixels halve the noise.
+/// Side of the blocks with averaged luminance (pixels): four pixels halve the noise.
 const BLOCK: usize = 2;
 
-/// Difference with weight one half [natural log units], a step of 10 %. Larger differences count
+/// Difference with weight one half (natural log units), a step of 10 %. Larger differences count
 /// nearly fully, smaller ones quadratically. The plain mean would be the total variation. It rates
 /// a ramp over many blocks like an edge of the same height, and accumulates faint noise over the
 /// frame.
 const HALF: f64 = 0.1;
 
-/// Error of each pair of neighbouring blocks [natural log units]; NaN if a block has no finite
+/// Error of each pair of neighbouring blocks (natural log units); NaN if a block has no finite
 /// pixel.
 pub(super) struct Structure {
     /// Width and height of the picture, pixels.
@@ -32,7 +32,7 @@ pub(super) struct Structure {
 /// The structure error alone.
 ///
 /// # Errors
-/// Pictures of different sizes, without pixels, or of more than [`super::MAX_PIXELS`].
+/// Pictures of different sizes, without pixels, or of more than `MAX_PIXELS`.
 pub fn structure(test: &Linear, reference: &Linear) -> Result<f64, MetricError> {
     check(test, reference)?;
     Ok(Structure::new(test, reference, dark(test, reference), 1.0).mean(None))

@@ -247,7 +247,7 @@ fn read_exr(path: &Path) -> Result<Vec<[f32; 4]>, String> {
     Ok(image.layer_data.channel_data.pixels.1)
 }
 
-/// Reads a picture of at most [`MAX_PIXELS`] as linear RGB: radiance from an EXR or HDR, decoded
+/// Reads a picture of at most `MAX_PIXELS` as linear RGB: radiance from an EXR or HDR, decoded
 /// sRGB from a PNG.
 ///
 /// # Errors

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// Version of the schema.
 pub const SCHEMA: &str = "conelab-stats-1";
 
-/// Minimum, median and 95th percentile [ms].
+/// Minimum, median and 95th percentile (ms).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     pub min: f64,
@@ -83,11 +83,11 @@ pub struct Stats {
     pub total_gpu_ms: Spread,
     /// Recording and submitting on the CPU.
     pub cpu_ms: Spread,
-    /// Size of each graph resource [bytes].
+    /// Size of each graph resource (bytes).
     pub bytes: BTreeMap<String, u64>,
-    /// Total size of the graph's resources [bytes].
+    /// Total size of the graph's resources (bytes).
     pub total_bytes: u64,
-    /// Size of the scene's geometry and textures [bytes].
+    /// Size of the scene's geometry and textures (bytes).
     pub scene_bytes: u64,
     /// Failed checks of the graph.
     pub warnings: Vec<String>,

@@ -36,9 +36,9 @@ impl Rows {
 pub struct Timers {
     /// Title lines.
     pub title: Vec<String>,
-    /// Name and time [ms] in graph order.
+    /// Name and time (ms) in graph order.
     pub rows: Vec<(String, f64)>,
-    /// From the first to the last command on the GPU [ms].
+    /// From the first to the last command on the GPU (ms).
     pub total: f64,
     /// Statistic of the times over several frames.
     pub statistic: &'static str,
@@ -103,7 +103,7 @@ impl Timers {
         }
     }
 
-    /// The longest time [ms], which scales the bars.
+    /// The longest time (ms), which scales the bars.
     pub fn longest(&self) -> f64 {
         self.rows.iter().map(|r| r.1).fold(0.0, f64::max)
     }

@@ -17,7 +17,7 @@ pub(super) fn sky_over(model: &Scene) -> Vec3 {
     }
 }
 
-/// Vertical field of view of default cameras [degrees].
+/// Vertical field of view of default cameras (degrees).
 const FOV_Y: f32 = 58.3;
 
 /// The slightly warm sun over a model file, coming in steeply.

@@ -4,10 +4,10 @@ use glam::{Mat4, Vec3};
 
 use super::Scene;
 
-/// Largest absolute coordinate [m]: products of four coordinates still fit 32-bit floats.
+/// Largest absolute coordinate (m): products of four coordinates still fit 32-bit floats.
 pub const MAX_COORDINATE: f32 = 1e9;
 
-/// Smallest scene diagonal [m]: offsets against rounding reach this size, and smaller scenes lose
+/// Smallest scene diagonal (m): offsets against rounding reach this size, and smaller scenes lose
 /// light.
 const MIN_DIAGONAL: f32 = 1e-4;
 

@@ -79,7 +79,7 @@ pub struct Scene {
     pub sky: Vec3,
     /// The environment map.
     pub environment: Option<Environment>,
-    /// Median distance visible from the default camera when the scene was opened [m]; 0 if unknown.
+    /// Median distance visible from the default camera when the scene was opened (m); 0 if unknown.
     pub seen_distance: f32,
     /// Deviations from the source file (missing files, dropped triangles, placeholders); each names
     /// the file.
@@ -338,10 +338,10 @@ pub struct Light {
     pub name: String,
     /// Emission pattern.
     pub kind: LightKind,
-    /// Irradiance on a facing surface [W/m^2] for a directional light, radiant intensity [W/sr]
+    /// Irradiance on a facing surface (W/m^2) for a directional light, radiant intensity (W/sr)
     /// otherwise.
     pub color: Vec3,
-    /// World [m]; ignored for a directional light.
+    /// World (m); ignored for a directional light.
     pub position: Vec3,
     /// Unit length, the way the light travels.
     pub direction: Vec3,
@@ -354,14 +354,14 @@ pub struct Light {
 pub struct Camera {
     /// World, m.
     pub eye: Vec3,
-    /// Point in the centre of the picture; world [m].
+    /// Point in the centre of the picture; world (m).
     pub target: Vec3,
     /// Up direction; need not be orthogonal to the view.
     pub up: Vec3,
     /// Vertical field of view in degrees.
     pub fov_y: f32,
-    /// Distance of the near plane [m].
+    /// Distance of the near plane (m).
     pub near: f32,
-    /// Distance of the far plane [m]; unused when rendering, kept for export. Default: infinity.
+    /// Distance of the far plane (m); unused when rendering, kept for export. Default: infinity.
     pub far: f32,
 }

@@ -15,7 +15,7 @@ pub(super) struct Seen {
     pub hits: f32,
     /// Fraction of rays that hit a back face.
     pub backs: f32,
-    /// Median distance of the hits [m]; `None` without hits.
+    /// Median distance of the hits (m); `None` without hits.
     pub median: Option<f32>,
 }
 

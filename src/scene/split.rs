@@ -16,7 +16,7 @@ impl Scene {
     /// Whether an edge is split depends only on its ends, and both sides compute the same midpoint.
     /// Triangles that share an edge therefore stay watertight, also across seams of normals and
     /// texture coordinates. A mesh with several placements is split for the largest one, in its
-    /// pose at 0 s. Meshes that would exceed [`MAX_TRIANGLES`] stay unchanged, as does the whole
+    /// pose at 0 s. Meshes that would exceed `MAX_TRIANGLES` stay unchanged, as does the whole
     /// scene if `max_edge` is not positive; a warning reports it.
     pub fn split_triangles(&self, max_edge: f32) -> Scene {
         let mut scene = self.clone();

@@ -10,7 +10,7 @@ pub enum Scalar {
     Float,
     Int,
     Uint,
-    /// Another width [bits].
+    /// Another width (bits).
     Other(u32),
 }
 
@@ -44,7 +44,7 @@ pub enum Layout {
 pub struct Member {
     /// Name in GLSL.
     pub name: String,
-    /// Offset in the struct [bytes].
+    /// Offset in the struct (bytes).
     pub offset: u32,
     pub layout: Layout,
 }
@@ -116,7 +116,7 @@ impl Layout {
             .collect()
     }
 
-    /// Size of the fixed part [bytes]: everything except a runtime array at the end.
+    /// Size of the fixed part (bytes): everything except a runtime array at the end.
     pub fn bytes(&self) -> u32 {
         match self {
             Layout::Scalar(s) => s.bytes(),

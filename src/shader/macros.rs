@@ -237,7 +237,7 @@ struct Macros<'d> {
 }
 
 impl<'d> Macros<'d> {
-    /// Cost of a text [tokens].
+    /// Cost of a text (tokens).
     fn top(&mut self, tokens: &[&'d str]) -> Result<f64, String> {
         let form = self.cost(tokens, &[], 0);
         self.open.clear();

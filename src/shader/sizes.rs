@@ -65,7 +65,7 @@ const VALUES: [u32; 15] = [
 /// Checks a module. `constants` overrides specialisation constants by id.
 ///
 /// # Errors
-/// Variables above [`MAX_BYTES`] in total, or one value above it.
+/// Variables above `MAX_BYTES` in total, or one value above it.
 pub fn check_sizes(words: &[u32], constants: &[(u32, u32)]) -> Result<(), TooLarge> {
     let (numbers, mut sizes) = (numbers(words, constants), Sizes::default());
     let (mut sum, mut largest) = (0u64, (0, 0));
@@ -96,7 +96,7 @@ pub fn check_sizes(words: &[u32], constants: &[(u32, u32)]) -> Result<(), TooLar
     }
 }
 
-/// Sizes of types by id [bytes], and pointee types.
+/// Sizes of types by id (bytes), and pointee types.
 #[derive(Default)]
 struct Sizes {
     bytes: BTreeMap<u32, u64>,

@@ -102,7 +102,7 @@ pub struct DeviceInfo {
     /// Valid bits of a timestamp; the counter wraps above them.
     pub(crate) timestamp_mask: u64,
     pub(crate) limits: vk::PhysicalDeviceLimits,
-    /// Size of the largest device-local heap [bytes].
+    /// Size of the largest device-local heap (bytes).
     pub heap: u64,
     /// Optional features.
     pub features: Features,

@@ -74,7 +74,7 @@ pub struct Image {
     pub(super) handle: vk::Image,
     memory: Memory,
     pub desc: ImageDesc,
-    /// Size of its memory [bytes].
+    /// Size of its memory (bytes).
     pub bytes: u64,
 }
 

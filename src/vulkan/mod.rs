@@ -1,7 +1,7 @@
 //! A thin layer over Vulkan 1.3: one device and one queue, automatic memory, pipelines, timestamps.
 //!
 //! Independent of graphs, scenes and voxels. All `unsafe` of the crate is here. Every handle has an
-//! owner that keeps the [`Gpu`] alive and destroys the handle on drop.
+//! owner that keeps the `Gpu` alive and destroys the handle on drop.
 
 #![allow(unsafe_code, reason = "Vulkan is called here and nowhere else")]
 
@@ -60,7 +60,7 @@ pub enum VulkanError {
     OutOfMemory {
         /// The resource that did not fit.
         what: String,
-        /// Size of the resource [MiB].
+        /// Size of the resource (MiB).
         mib: f64,
     },
     /// A size above a device limit.

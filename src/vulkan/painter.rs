@@ -85,9 +85,9 @@ pub struct Painter {
     target: Target,
     format: vk::Format,
     gpu: Arc<Gpu>,
-    /// GPU time of the last finished frame [ms]: copying pictures, and drawing.
+    /// GPU time of the last finished frame (ms): copying pictures, and drawing.
     pub gpu_ms: (f64, f64),
-    /// Time that the last frame waited for an earlier one on the GPU [ms].
+    /// Time that the last frame waited for an earlier one on the GPU (ms).
     pub waited_ms: f64,
 }
 

@@ -169,7 +169,7 @@ pub struct PipelineDesc {
     pub stages: Vec<StageDesc>,
     /// Bindings of the shaders.
     pub bindings: Vec<BindingDesc>,
-    /// Size of the push constants of all stages [bytes].
+    /// Size of the push constants of all stages (bytes).
     pub push_bytes: u32,
     /// Raster state; `None` for a compute pipeline.
     pub draw: Option<(DrawState, Attachments)>,

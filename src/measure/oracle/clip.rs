@@ -5,7 +5,7 @@ use glam::DVec3;
 /// A corner of a clipped triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
-    /// World position [m].
+    /// World position (m).
     pub position: DVec3,
     /// Barycentric weights; their sum is 1.
     pub weights: DVec3,

@@ -41,7 +41,7 @@ pub struct Score {
     pub color_rms: f64,
     /// Largest difference of a channel.
     pub(crate) color_max: f64,
-    /// Mean angle between normals [degrees], where the exact normals are longer than 0.5.
+    /// Mean angle between normals (degrees), where the exact normals are longer than 0.5.
     pub(crate) normal_mean: f64,
     /// Mean difference of opacity and exact coverage.
     pub(crate) opacity_bias: f64,

@@ -200,7 +200,7 @@ fn filled(
     Some(hit)
 }
 
-/// Sample positions on a clipped triangle as barycentric weights, and their areas [m^2]: centroids
+/// Sample positions on a clipped triangle as barycentric weights, and their areas (m^2): centroids
 /// of a fan, each split in four for textures. A minimum area is used for touching triangles.
 fn samples(polygon: &[Corner], direction: DVec3, textured: bool) -> Vec<(DVec3, f64)> {
     const TRACE: f64 = 1e-18;

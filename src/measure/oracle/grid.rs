@@ -9,7 +9,7 @@ const MAX_CELLS: usize = 1024;
 /// A rectilinear grid; spacing may vary.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// World coordinates of the cell borders along x, y and z, increasing, one more than cells [m].
+    /// World coordinates of the cell borders along x, y and z, increasing, one more than cells (m).
     borders: [Vec<f64>; 3],
 }
 
@@ -62,13 +62,13 @@ impl Grid {
         ]
     }
 
-    /// Lowest and highest corner of a cell [m].
+    /// Lowest and highest corner of a cell (m).
     pub fn corners(&self, cell: [u32; 3]) -> (DVec3, DVec3) {
         let at = |i: u32| [0, 1, 2].map(|axis| self.borders[axis][(cell[axis] + i) as usize]);
         (DVec3::from_array(at(0)), DVec3::from_array(at(1)))
     }
 
-    /// Cells along an axis that [low, high] touches [m], plus one on each side against rounding.
+    /// Cells along an axis that [low, high] touches (m), plus one on each side against rounding.
     pub fn touched(&self, axis: usize, low: f64, high: f64) -> Range<u32> {
         let borders = &self.borders[axis];
         let last = borders.len() - 1;
@@ -81,7 +81,7 @@ impl Grid {
         }
     }
 
-    /// Edge lengths of the cell at a point, or of the nearest cell [m].
+    /// Edge lengths of the cell at a point, or of the nearest cell (m).
     pub(crate) fn edges_at(&self, p: DVec3) -> DVec3 {
         let edge = |axis: usize| {
             let borders = &self.borders[axis];

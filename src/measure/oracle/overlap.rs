@@ -33,7 +33,7 @@ pub struct Axes {
 }
 
 impl Axes {
-    /// Prepares a triangle in world coordinates [m].
+    /// Prepares a triangle in world coordinates (m).
     pub fn new(t: [DVec3; 3]) -> Axes {
         let edges = [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
         let units = [DVec3::X, DVec3::Y, DVec3::Z];
@@ -73,7 +73,7 @@ impl Axes {
         self.axes[3].direction
     }
 
-    /// Tests a box given by its centre and half edges [m].
+    /// Tests a box given by its centre and half edges (m).
     ///
     /// First for the conservative, 26-separating set: all boxes that the triangle overlaps. Then
     /// for the thin, 6-separating set: those in which the triangle may cross a line between the

@@ -34,7 +34,7 @@ struct Resources {
     normal: String,
     /// Buffer of the cell borders. First a 32-bit word that is 1 if cells are boxes, else 0; the z
     /// of the first cell in the textures; and the number of cells along x, y and z. Then, as
-    /// floats, the world coordinates of the borders along x, y and z [m], one more than cells each.
+    /// floats, the world coordinates of the borders along x, y and z (m), one more than cells each.
     borders: String,
 }
 

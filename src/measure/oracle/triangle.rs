@@ -6,7 +6,7 @@ use glam::{DVec3, Mat3, Vec3, Vec4};
 /// A triangle in the world.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle {
-    /// Corners [m].
+    /// Corners (m).
     pub corners: [DVec3; 3],
     /// Shading normals, unit length.
     pub normals: [Vec3; 3],
@@ -18,7 +18,7 @@ pub struct Triangle {
     pub material: u32,
 }
 
-/// All triangles of a scene at a time [s], instance by instance, in the shaders' world. Corners are
+/// All triangles of a scene at a time (s), instance by instance, in the shaders' world. Corners are
 /// rounded to f32, as on the device.
 pub fn triangles_of(scene: &Scene, time: f64) -> Vec<Triangle> {
     let origin = scene.origin().extend(0.0);

@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Default path length of references [bounces], enough for all light that matters.
+/// Default path length of references (bounces), enough for all light that matters.
 pub(crate) const ALL_BOUNCES: u32 = 64;
 
 /// A reference picture with its light components.
@@ -36,7 +36,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Memory of the pictures [bytes].
+    /// Memory of the pictures (bytes).
     pub fn bytes(&self) -> usize {
         let pictures = |p: &ReferencePart| if p.halves.is_some() { 3 } else { 1 };
         self.parts
@@ -53,7 +53,7 @@ pub struct ReferencePart {
     pub mean: Linear,
     /// Noise of the reference itself.
     pub noise: Noise,
-    /// Means of the even and the odd samples, if made by [`Tracer::gather`]; they need twice the
+    /// Means of the even and the odd samples, if made by `Tracer::gather`; they need twice the
     /// memory again.
     pub halves: Option<[Linear; 2]>,
 }

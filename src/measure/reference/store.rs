@@ -372,7 +372,7 @@ fn keep_noise(json: &Path, mut record: Record, sums: &Sums) -> Result<(), LabErr
     Ok(())
 }
 
-/// Larger descriptions are invalid [bytes].
+/// Larger descriptions are invalid (bytes).
 const MAX_JSON: u64 = 16 << 20;
 
 /// Reads a file, unless it is larger than the sums of `parts` components.

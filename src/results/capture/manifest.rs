@@ -64,7 +64,7 @@ pub struct Manifest {
     pub size: [u32; 2],
     /// Rendered frames; the pictures show the last one.
     pub frames: usize,
-    /// Time step between frames [s].
+    /// Time step between frames (s).
     pub step: f64,
     pub(crate) images: Vec<Image>,
     /// SHA-256 of every other file, by path in the capture.

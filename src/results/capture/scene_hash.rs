@@ -146,7 +146,7 @@ fn hash_motion(scene: &Scene, hash: &mut Hash) {
 }
 
 /// Size of a vertex up to the second coordinate set and colour, which most scenes do not have
-/// [bytes].
+/// (bytes).
 const PLAIN: usize = offset_of!(Vertex, uv_second);
 
 /// Every list is preceded by its length, so that different scenes cannot give the same bytes.

@@ -41,7 +41,7 @@ pub struct What {
     /// Frames to render, at least 1. `None`: as many as the graph needs to converge, or one if time
     /// advances.
     pub frames: Option<usize>,
-    /// Time step between frames [s].
+    /// Time step between frames (s).
     pub step: f64,
     /// GPU times drawn on a second picture, timers.png.
     pub timers: Rows,

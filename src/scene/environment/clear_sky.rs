@@ -12,7 +12,7 @@ const C: f32 = 10.0;
 const D: f32 = -3.0;
 const E: f32 = 0.45;
 
-/// Angular radius of the sun's disc [degrees].
+/// Angular radius of the sun's disc (degrees).
 const SUN_RADIUS: f32 = 0.265;
 
 /// Samples per side of a texel that the sun's edge may cross.

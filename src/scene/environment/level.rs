@@ -13,7 +13,7 @@ pub(crate) struct Level {
 }
 
 impl Level {
-    /// Solid angle of a texel in a row [sr].
+    /// Solid angle of a texel in a row (sr).
     pub fn solid_angle(&self, row: u32) -> f64 {
         let edge = |row: u32| (PI * f64::from(row) / f64::from(self.height)).cos();
         TAU / f64::from(self.width) * (edge(row) - edge(row + 1))

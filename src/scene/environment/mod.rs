@@ -25,7 +25,7 @@ pub struct Environment {
     /// The source file, if any.
     pub file: Option<PathBuf>,
     pub picture: Arc<SkyPicture>,
-    /// Rotation about y [degrees]; at 90 the middle of the picture points towards -x.
+    /// Rotation about y (degrees); at 90 the middle of the picture points towards -x.
     pub rotation: f32,
 }
 

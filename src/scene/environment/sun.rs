@@ -8,11 +8,11 @@ use glam::{DVec3, Vec3};
 
 /// Texels of a sun are brighter than this multiple of the mean over all directions,
 const TIMES_MEAN: f64 = 50.0;
-/// within this angle of the brightest texel [degrees],
+/// within this angle of the brightest texel (degrees),
 const WITHIN: f64 = 5.0;
 /// and together at least this share of all light.
 const SHARE: f64 = 0.02;
-/// The surroundings are averaged out to this angle [degrees].
+/// The surroundings are averaged out to this angle (degrees).
 const AROUND: f64 = 7.5;
 
 /// A compact peak of an environment map.

@@ -20,7 +20,7 @@ pub(super) struct Motion {
     tracks: HashMap<u32, Arc<Track>>,
     /// Keyed by the element of the channel.
     weights: HashMap<u32, Curve<f32>>,
-    /// Period of all tracks [s].
+    /// Period of all tracks (s).
     pub period: Option<f32>,
 }
 

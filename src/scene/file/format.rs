@@ -63,7 +63,7 @@ pub(super) enum SkyOf {
 #[serde(try_from = "EnvironmentFields")]
 pub(super) struct EnvironmentEntry {
     pub of: SkyOf,
-    /// Rotation about y [degrees].
+    /// Rotation about y (degrees).
     pub rotation: f32,
     pub intensity: f32,
 }

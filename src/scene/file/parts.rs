@@ -131,7 +131,7 @@ impl Default for Places {
 }
 
 impl Places {
-    /// Rotations about y [radians] and positions.
+    /// Rotations about y (radians) and positions.
     pub(super) fn list(&self) -> Result<Vec<(f32, Vec3)>, String> {
         let count = match self {
             Places::At(list) => list.len() as u64,

@@ -112,7 +112,7 @@ pub(in crate::scene) fn point_key(position: [f32; 3]) -> [u32; 3] {
     position.map(|c| (c + 0.0).to_bits())
 }
 
-/// Corner angles of a triangle [radians].
+/// Corner angles of a triangle (radians).
 pub(in crate::scene) fn corner_angles(triangle: &[Vertex; 3]) -> [f32; 3] {
     let p = triangle.map(|v| Vec3::from_array(v.position));
     let angle = |i: usize| {

@@ -59,7 +59,7 @@ impl<T: Value> Curve<T> {
         Curve::new(self.times.clone(), values, self.interpolation)
     }
 
-    /// Times of the keys [s], increasing.
+    /// Times of the keys (s), increasing.
     pub fn times(&self) -> &[f32] {
         &self.times
     }

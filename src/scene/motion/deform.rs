@@ -22,7 +22,7 @@ pub struct Deformer {
     pub(crate) morphs: Vec<Morph>,
     /// The weight of each morph over time.
     pub weights: Vec<Curve<f32>>,
-    /// Period of the weights [s].
+    /// Period of the weights (s).
     pub period: Option<f32>,
     /// The joints of the skin; empty without a skin.
     pub joints: Vec<Joint>,
@@ -42,7 +42,7 @@ pub struct Deformer {
 /// Per-vertex offsets of a morph target; empty lists are zero.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Morph {
-    /// Offsets of positions [m].
+    /// Offsets of positions (m).
     pub positions: Vec<Vec3>,
     /// Offsets of normals, added before normalisation.
     pub normals: Vec<Vec3>,

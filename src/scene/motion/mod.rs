@@ -32,7 +32,7 @@ pub struct Mover {
 /// Animated scale, then rotation, then translation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Track {
-    /// Translation [m].
+    /// Translation (m).
     pub translation: Option<Curve<Vec3>>,
     /// Rotation as unit quaternions.
     pub rotation: Option<Curve<Quat>>,
@@ -40,14 +40,14 @@ pub struct Track {
     pub scale: Option<Curve<Vec3>>,
     /// Values of absent curves.
     pub rest: Rest,
-    /// Period [s]; `None` holds the last key.
+    /// Period (s); `None` holds the last key.
     pub period: Option<f32>,
 }
 
 /// A static pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
-    /// Translation [m].
+    /// Translation (m).
     pub translation: Vec3,
     /// Rotation, unit length.
     pub rotation: Quat,
@@ -68,9 +68,9 @@ impl Default for Rest {
 /// A rigid pose at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keyframe {
-    /// Time [s].
+    /// Time (s).
     pub time: f32,
-    /// Translation [m].
+    /// Translation (m).
     pub translation: Vec3,
     /// Rotation about the origin, before the translation.
     pub rotation: Quat,

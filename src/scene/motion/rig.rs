@@ -30,7 +30,7 @@ pub(in crate::scene) struct Posing {
     pub joints: Vec<Joint>,
     /// One curve per morph.
     pub weights: Vec<Curve<f32>>,
-    /// Period of the weights [s].
+    /// Period of the weights (s).
     pub period: Option<f32>,
 }
 

@@ -24,7 +24,7 @@ struct PictureFields {
     pattern: Pattern,
 }
 
-/// The pattern. Normal maps use its height field over a square of the given size [m].
+/// The pattern. Normal maps use its height field over a square of the given size (m).
 #[derive(Clone, Copy, Debug, Deserialize)]
 enum Pattern {
     Ashlar,

@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::{FACES, MeshBuilder, Paint};
 
-/// Cuts closer than this are merged, so that rounding makes no slivers [m].
+/// Cuts closer than this are merged, so that rounding makes no slivers (m).
 const SAME_CUT: f32 = 1e-4;
 
 /// Maximum grid cells times boxes of one solid.

@@ -7,7 +7,7 @@ use crate::scene::{Scene, Texture, TextureFormat};
 /// Maximum number of kinds that keep their size.
 pub const MAX_TEXTURE_KINDS: usize = 12;
 
-/// Side of the shared arrays for textures of rare kinds [texels].
+/// Side of the shared arrays for textures of rare kinds (texels).
 pub const SHARED_EDGE: u32 = 512;
 
 /// Width, height, levels and format shared by the layers of an array.

@@ -15,9 +15,9 @@ use super::decode::{MAX_FILE_BYTES, MAX_FILE_SIDE};
 #[cfg(test)]
 mod tests;
 
-/// Block size of ETC1S and UASTC [texels].
+/// Block size of ETC1S and UASTC (texels).
 const SIDE: u32 = 4;
-/// Block size of UASTC [bytes].
+/// Block size of UASTC (bytes).
 const UASTC_BYTES: usize = 16;
 
 /// Position of the offset and length of the key-value data in the header.
