@@ -1,7 +1,7 @@
 //! Emitting triangles as shaders draw places on them (`shaders/lights/emitters.glsl`).
 
 use super::attributes::{color_of, uv_of};
-use super::interface::{EmitterBlock, InstanceBlock};
+use super::interface::blocks::{EmitterBlock, InstanceBlock};
 use super::shape::Shape;
 use crate::scene::{Lookup, Scene, Side, SmallPicture};
 use glam::{Mat4, Vec2, Vec3, Vec4};

@@ -1,6 +1,6 @@
 //! The present lighting of a scene on the device.
 
-use super::interface::{LightBlock, SceneInfoBlock, ShadowBlock};
+use super::interface::blocks::{LightBlock, SceneInfoBlock, ShadowBlock};
 use super::sky;
 use super::view::lights;
 use crate::scene::{Environment, Light, Scene};

@@ -5,9 +5,8 @@ use super::attributes::{self, Attributes};
 use super::bvh;
 use super::dielectrics::Dielectrics;
 use super::emitters::Emitters;
-use super::interface::{
-    CameraBlock, InstanceBlock, MATERIAL_TEXTURES, MaterialBlock, SceneInfoBlock,
-};
+use super::interface::MATERIAL_TEXTURES;
+use super::interface::blocks::{CameraBlock, InstanceBlock, MaterialBlock, SceneInfoBlock};
 use super::lighting::Lighting;
 use super::materials::{self, MaterialTextures};
 use super::shape::{Shape, count};

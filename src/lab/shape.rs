@@ -1,7 +1,7 @@
 //! The triangles of a scene in a pose, as shaders and rays read them.
 
 use super::attributes::{self, Attributes};
-use super::interface::DrawBlock;
+use super::interface::blocks::DrawBlock;
 use crate::scene::{Scene, Vertex};
 use glam::Vec3;
 use std::borrow::Cow;

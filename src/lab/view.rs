@@ -1,6 +1,6 @@
 //! Cameras and shadow views as the shaders see them.
 
-use super::interface::{CameraBlock, LightBlock, ShadowBlock};
+use super::interface::blocks::{CameraBlock, LightBlock, ShadowBlock};
 use crate::experiment::PlacedCamera;
 use crate::scene::{Camera, Light, LightKind, Scene, defaults};
 use glam::{Mat4, Vec3, camera::rh::proj::vulkan};

@@ -2,12 +2,7 @@
 //! stated once, here. [`SceneGpu`](super::SceneGpu) fills them in; `shaders/common/scene.glsl`
 //! declares the structs.
 
-mod blocks;
-
-pub(super) use blocks::{
-    CameraBlock, DrawBlock, EmitterBlock, InstanceBlock, LightBlock, MaterialBlock, SceneInfoBlock,
-    ShadowBlock,
-};
+pub(super) mod blocks;
 
 use super::view::{directional_view_count, shadow_view_count};
 use crate::diagnostics::Diagnostic;
@@ -17,6 +12,10 @@ use crate::graph::interface::{External, ExternalKind, SceneInterface};
 use crate::graph::load::Folders;
 use crate::scene::{Light, Scene, origin_of};
 use crate::vulkan::DeviceInfo;
+use blocks::{
+    CameraBlock, DrawBlock, EmitterBlock, InstanceBlock, LightBlock, MaterialBlock, SceneInfoBlock,
+    ShadowBlock,
+};
 use glam::Vec3;
 use std::mem::offset_of;
 use std::path::Path;

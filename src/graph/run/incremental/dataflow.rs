@@ -6,7 +6,7 @@ use crate::graph::plan::{Places, Plan, Step};
 
 /// Whether a part holds the version that a step reads at the start of the frame already, by step
 /// and read.
-pub(super) type Held = Vec<Vec<bool>>;
+pub(super) type Ready = Vec<Vec<bool>>;
 
 /// The data flow of a frame. A *part* is a mip of a copy of a texture, or a copy of a buffer. Each
 /// time that a step replaces a part, a new *generation* of it begins: steps that read one
@@ -111,11 +111,11 @@ impl Dataflow {
     /// 3. A step that runs makes a generation that it reads needed, unless the part holds it
     ///    already and no step that runs overwrites the part.
     ///
-    /// Steps that are `skipped` never run: their groups have converged.
+    /// `stopped` steps never run: their groups have converged.
     pub fn steps_to_run(
         &self,
-        held: &Held,
-        skipped: &[bool],
+        ready: &Ready,
+        stopped: &[bool],
         is_new: impl Fn(usize) -> bool,
     ) -> Vec<bool> {
         let mut needed = vec![false; self.generations];
@@ -132,7 +132,7 @@ impl Dataflow {
                 .iter()
                 .enumerate()
                 .rev()
-                .filter(|(i, _)| !skipped[*i])
+                .filter(|(i, _)| !stopped[*i])
             {
                 if !runs[i] && step.writes.iter().any(|write| needed[write.to.generation]) {
                     (runs[i], changed) = (true, true);
@@ -143,8 +143,8 @@ impl Dataflow {
                     }
                 }
                 if runs[i] {
-                    for (read, is_held) in step.reads.iter().zip(&held[i]) {
-                        if (!is_held || overwritten[read.part]) && !needed[read.generation] {
+                    for (read, is_ready) in step.reads.iter().zip(&ready[i]) {
+                        if (!is_ready || overwritten[read.part]) && !needed[read.generation] {
                             (needed[read.generation], changed) = (true, true);
                         }
                     }

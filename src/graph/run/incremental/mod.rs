@@ -1,29 +1,37 @@
-//! Incremental execution: skips steps that would write what their outputs hold already, with
-//! pictures equal to the bit.
+//! Incremental execution: skips steps that would write the content that their outputs hold already.
+//! Pictures are equal, to the bit, to those of full execution.
 //!
-//! Every part, a mip of a texture or a buffer, has a *version*: a hash of the step that wrote it
-//! and of that step's inputs. The inputs are versions of parts and hashes of external bytes, so
-//! equal versions are equal contents. A frame is first simulated on versions alone. Then only steps
-//! with new versions of their outputs run.
+//! A step is one execution of a pass; a pass may have several. Every *part*, a mip of a texture or
+//! a buffer, has a *version*: a hash h of the step that wrote it and of that step's inputs. Inputs
+//! are the versions of the parts that it reads, and hashes of bytes from outside the graph. Equal
+//! versions are equal contents (but for collisions of 64-bit hashes). A frame is first simulated on
+//! versions alone. Then the steps run that write parts with new versions, and the steps that these
+//! need because an input is not in memory.
 //!
 //! ```text
 //! graph:    clear   writes A
 //!           light   reads A and the lamps, writes B
 //!           shade   reads B and the camera, writes C
-//! frame 1:  A = h(clear)   B = h(light, A, lamps)   C = h(shade, B, camera)         all new: all run
-//! frame 2:  the camera moves: A, B as before        C = h(shade, B, camera') new    shade runs
-//! frame 3:  a lamp changes: B = h(light, A, lamps') new, so C is new                light and shade run
-//!           clear: A holds version h(clear) still                                   skipped
-//! frame 4:  if A shares memory with other parts, it holds nothing between frames    clear runs if light does
+//!
+//! frame 1:  A = h(clear)    B = h(light, A, lamps)    C = h(shade, B, camera)
+//!           all versions are new: all run
+//! frame 2:  the camera moves, so C = h(shade, B, camera') is new: shade runs
+//! frame 3:  a lamp changes, so B = h(light, A, lamps') and with it C are new: light and shade run.
+//!           A has its version already: clear is skipped
+//!
+//! If A is transient (it shares memory with other parts and holds nothing between frames), frame 3
+//! runs clear too, because light needs A.
 //! ```
 //!
-//! Nothing is declared for this. A step that reads the frame count, or its own output, gets a new
-//! version in every frame, unless its group has converged ([`converge`]).
+//! Authors of graphs declare nothing for this. A step that reads the frame count, or its own output
+//! of the last frame, gets a new version in every frame, so it runs in every frame. A graph may
+//! declare that a *group* of such steps converges (`settles`): the group stops after that number
+//! of frames in which its inputs did not change ([`converge`]).
 //!
 //! - [`version`]: versions, and how writes change them
 //! - [`external`]: hashes of inputs from outside the graph
 //! - [`dataflow`]: dependencies between steps, and the steps that have to run
-//! - [`converge`]: groups of steps that stop after a number of frames without a change
+//! - [`converge`]: groups of steps that stop
 
 mod converge;
 mod dataflow;
@@ -36,7 +44,7 @@ use crate::graph::interface::SceneInterface;
 use crate::graph::link::Linked;
 use crate::graph::plan::{Places, Plan};
 use converge::Group;
-use dataflow::{Dataflow, Held};
+use dataflow::{Dataflow, Ready};
 use external::Externals;
 use std::hash::{BuildHasher, Hash};
 use version::Version;
@@ -60,17 +68,20 @@ pub enum Execution {
     #[serde(alias = "all")]
     #[value(alias = "all")]
     Full,
-    /// Passes with output that would change; pictures are equal to the bit.
+    /// Those with output that may change. Pictures are equal, to the bit, to those of full
+    /// execution.
     #[serde(alias = "changed")]
     #[value(alias = "changed")]
     Incremental,
 }
 
-/// Versions of all parts, from frame to frame.
+/// The versions that all parts hold, and what decides about the next frame.
 pub(super) struct Versions {
+    /// By part: the version that it holds between frames.
     held: Vec<Version>,
     externals: Externals,
-    /// In even and in odd frames, which swap the copies of resources with a history.
+    /// The data flow of even frames, then of odd ones: the two copies of resources with a history
+    /// swap.
     dataflow: [Dataflow; 2],
     groups: Vec<Group>,
 }
@@ -78,17 +89,19 @@ pub(super) struct Versions {
 /// The work of a frame.
 #[derive(PartialEq, Eq)]
 pub(super) struct Frame {
-    /// By step.
+    /// By step: whether it runs.
     pub runs: Vec<bool>,
-    /// By convergence group: whether it has converged and copies its history to this frame.
+    /// By group: whether it has converged and last frame's copies of its output are copied to those
+    /// of this frame. In full execution this replaces the output of the group.
     pub carries: Vec<bool>,
 }
 
-/// A frame simulated on versions.
+/// The result of simulating a frame on versions.
 struct Simulated {
+    /// By part: the version at the end of the frame.
     now: Vec<Version>,
-    held: Held,
-    /// Hashes of the inputs, by group and step of its ring.
+    ready: Ready,
+    /// Hashes of the inputs, by group and step of its ring ([`Group::ring`]).
     inputs: Vec<Vec<u64>>,
 }
 
@@ -100,7 +113,7 @@ fn hashed(value: impl Hash) -> u64 {
 const HASHER: foldhash::quality::FixedState = foldhash::quality::FixedState::with_seed(0);
 
 impl Versions {
-    /// Versions of parts with unknown contents: every step runs once.
+    /// Versions of parts with unknown contents, so that every part is written once.
     pub(super) fn new(
         interface: &'static SceneInterface,
         linked: &[Linked],
@@ -128,21 +141,23 @@ impl Versions {
         }
     }
 
-    /// New bytes of an external resource, or of its part at an offset, from the next frame on.
+    /// New bytes of an external resource, or of its bytes from an offset on, from the next frame
+    /// on.
     pub(super) fn update(&mut self, name: &str, at: Option<u64>, bytes: &[u8]) {
         self.externals.update(name, at, bytes);
     }
 
     /// The work of the next frame. Afterwards versions are those at its end. In full execution
-    /// converged groups run too, and their output is discarded: pictures are the same, and times
-    /// are of all work.
+    /// converged groups run too, and last frame's output replaces theirs: pictures are the same,
+    /// and times are of all work.
     pub(super) fn frame(&mut self, odd: bool, execution: Execution) -> Frame {
         let flow = &self.dataflow[usize::from(odd)];
         let mut converged: Vec<bool> = self.groups.iter().map(Group::has_converged).collect();
         let simulated = loop {
             let simulated = self.simulate(flow, &converged);
-            // A change before the group's last step restarts it in this frame, a later one in the
-            // next.
+            // An input of a ring step up to the group's last step restarts the group in this frame.
+            // An input of a later ring step restarts it in the next. One group may be an input of
+            // another, so the frame is simulated again.
             let restarts =
                 |k: &usize| converged[*k] && self.groups[*k].differs(&simulated.inputs[*k]);
             let restarted: Vec<usize> = (0..converged.len()).filter(restarts).collect();
@@ -165,41 +180,42 @@ impl Versions {
         frame
     }
 
-    /// Whether every group has converged, unless something changes before the next frame.
+    /// Whether every group has converged. A change before the next frame may restart one.
     pub(super) fn have_converged(&self) -> bool {
         self.groups.iter().all(Group::has_converged)
     }
 
-    /// The steps and copies that lead to the versions of a simulated frame.
+    /// The steps that run and the histories that are copied, so that all parts get the versions of
+    /// a simulated frame.
     fn changes(&self, flow: &Dataflow, simulated: &Simulated, converged: &[bool]) -> Frame {
         let is_new =
             |part: usize| !flow.transient[part] && simulated.now[part].id != self.held[part].id;
-        let mut skipped = vec![false; flow.steps.len()];
+        let mut stopped = vec![false; flow.steps.len()];
         for (group, _) in self
             .groups
             .iter()
             .zip(converged)
             .filter(|(_, converged)| **converged)
         {
-            group.steps.iter().for_each(|step| skipped[*step] = true);
+            group.steps.iter().for_each(|step| stopped[*step] = true);
         }
         let carries = |(copies, converged): (&Vec<(usize, usize)>, &bool)| {
             *converged && copies.iter().any(|(this, _)| is_new(*this))
         };
         Frame {
-            runs: flow.steps_to_run(&simulated.held, &skipped, is_new),
+            runs: flow.steps_to_run(&simulated.ready, &stopped, is_new),
             carries: flow.carried.iter().zip(converged).map(carries).collect(),
         }
     }
 
-    /// The versions at the end of a frame in which these groups have converged.
+    /// Simulates a frame in which these groups have converged.
     fn simulate(&self, flow: &Dataflow, converged: &[bool]) -> Simulated {
         let mut now = self.held.clone();
         let mut inputs = vec![Vec::new(); self.groups.len()];
-        let mut held = Vec::with_capacity(flow.steps.len());
+        let mut ready = Vec::with_capacity(flow.steps.len());
         for (i, step) in flow.steps.iter().enumerate() {
             let is_held = |part: usize| !flow.transient[part] && now[part].id == self.held[part].id;
-            held.push(step.reads.iter().map(|read| is_held(read.part)).collect());
+            ready.push(step.reads.iter().map(|read| is_held(read.part)).collect());
             for (group, inputs) in self.groups.iter().zip(&mut inputs) {
                 if group.ring.binary_search(&i).is_ok() {
                     let others = step.reads.iter().filter(|read| !group.own[read.part]);
@@ -229,6 +245,6 @@ impl Versions {
                 }
             }
         }
-        Simulated { now, held, inputs }
+        Simulated { now, ready, inputs }
     }
 }
