@@ -674,7 +674,7 @@ fn a_pass_stands_behind_one_that_is_there() {
         .collect();
     assert_eq!(names, ["fill", "between", "finish"]);
     assert_snapshot!(mistakes(&pass("fil")), @r#"
-    passes/graph.ron:3:39: error: no pass 'fil' stands before this one
+    passes/graph.ron:3:39: error: no earlier pass is named 'fil'
         |     passes: [(name: "between", after: "fil", clear: "picture")],
         = help: did you mean 'fill'?
     "#);
