@@ -611,12 +611,12 @@ fn damaged_references_are_told_and_not_trusted() {
         assert!(error.is_err(), "{what}: more samples were added");
     };
     std::fs::write(&sums, &texels[..texels.len() / 2]).unwrap();
-    rejected("half a file", "not what was written");
+    rejected("half a file", "does not match its checksum");
     let mut flipped = texels.clone();
     let last = flipped.len() - 100;
     flipped[last] ^= 1;
     std::fs::write(&sums, &flipped).unwrap();
-    rejected("one bit", "not what was written");
+    rejected("one bit", "does not match its checksum");
     std::fs::write(&sums, vec![0; 4 << 20]).unwrap();
     rejected("a large file", "more than its samples take");
     // Sums that another process has replaced and deleted are none, and no mistake.
