@@ -28,6 +28,8 @@ pub struct SceneGpu {
     pub bytes: u64,
     /// Where the shaders' world begins in the scene's.
     pub origin: Vec3,
+    /// Bounds of the scene. Computing them walks through all vertices.
+    bounds: (Vec3, Vec3),
     own: Own,
     /// The uploaded scene, with split triangles if they were split.
     scene: Arc<Scene>,
@@ -46,27 +48,22 @@ struct Own {
 }
 
 impl Own {
+    /// Uploads it. `info` has the counts of the scene; `shape` is needed for rays and for meshes
+    /// that deform.
     fn new(
         upload: &mut Upload,
-        (scene, origin): (&Scene, Vec3),
-        shape: &Shape,
+        (scene, origin, bounds): (&Scene, Vec3, (Vec3, Vec3)),
+        info: SceneInfoBlock,
+        shape: Option<&Shape>,
         emitters: &Emitters,
         rays: bool,
     ) -> Result<Own> {
-        let (low, high) = scene.bounds();
         let lighting = Lighting::of(scene);
-        let (lights, shadows) = lighting.blocks((low, high), origin);
+        let (lights, shadows) = lighting.blocks(bounds, origin);
         let info = lighting.inform(SceneInfoBlock {
-            bounds_min: (low - origin).to_array(),
             light_count: count(lights.len()),
-            bounds_max: (high - origin).to_array(),
             shadow_views: count(shadows.len()),
-            sky: [0.0; 3],
-            triangle_count: shape.triangle_count(),
-            draw_count: count(shape.draws.len()),
-            vertex_count: count(shape.positions.len() / 3),
-            instance_count: count(scene.instances.len()),
-            sky_turn: 0.0,
+            ..info
         });
         let sent = instances(scene, origin, 0.0, None, false);
         let mut buffers = Buffers::new();
@@ -80,7 +77,7 @@ impl Own {
         add("shadowViews", bytemuck::cast_slice(&shadows), STORAGE)?;
         add("instances", bytemuck::cast_slice(&sent), STORAGE)?;
         add("emitters", &emitters.buffer(&sent, None), STORAGE)?;
-        if !scene.deformers.is_empty() {
+        if let Some(shape) = shape.filter(|_| !scene.deformers.is_empty()) {
             add("positions", bytemuck::cast_slice(&shape.positions), STORAGE)?;
             add(
                 "attributes",
@@ -88,7 +85,7 @@ impl Own {
                 STORAGE,
             )?;
         }
-        if rays {
+        if let Some(shape) = shape.filter(|_| rays) {
             let mut found = hierarchy(shape, emitters, &sent);
             // With room for the hierarchy of any other pose.
             let (nodes, triangles) = bvh::capacity(info.triangle_count as usize);
@@ -139,7 +136,10 @@ impl SceneGpu {
             bytemuck::cast_slice(&shape.commands()),
             vk::BufferUsageFlags::INDIRECT_BUFFER,
         )?;
-        let own = Own::new(&mut upload, (&scene, origin), &shape, &emitters, rays)?;
+        let bounds = scene.bounds();
+        let info = info_of(&scene, origin, bounds, &shape);
+        let place = (&*scene, origin, bounds);
+        let own = Own::new(&mut upload, place, info, Some(&shape), &emitters, rays)?;
         buffers.extend(own.buffers.clone());
         check_sizes(gpu, &buffers)?;
         upload.finish()?;
@@ -163,6 +163,7 @@ impl SceneGpu {
             resources,
             bytes,
             origin,
+            bounds,
             own,
             scene,
             emitters,
@@ -176,10 +177,13 @@ impl SceneGpu {
     /// Out of memory.
     pub fn fork(&self, gpu: &Arc<Gpu>) -> Result<SceneGpu> {
         let mut upload = Upload::new(gpu);
-        let shape = Shape::at_rest(&self.scene);
         let (scene, emitters) = (self.scene.clone(), self.emitters.clone());
         let rays = self.has_rays();
-        let own = Own::new(&mut upload, (&scene, self.origin), &shape, &emitters, rays)?;
+        let needed = rays || !scene.deformers.is_empty();
+        let shape = needed.then(|| Shape::at_rest(&scene));
+        let place = (&*scene, self.origin, self.bounds);
+        let info = self.own.info;
+        let own = Own::new(&mut upload, place, info, shape.as_ref(), &emitters, rays)?;
         upload.finish()?;
         let mut resources = self.resources.clone();
         resources.buffers.extend(own.buffers.clone());
@@ -187,6 +191,7 @@ impl SceneGpu {
             resources,
             bytes: self.bytes,
             origin: self.origin,
+            bounds: self.bounds,
             own,
             scene,
             emitters,
@@ -308,7 +313,7 @@ impl SceneGpu {
 
     fn relit(&mut self) -> Vec<Update> {
         let lighting = &self.own.lighting;
-        let (lights, shadows) = lighting.blocks(self.scene.bounds(), self.origin);
+        let (lights, shadows) = lighting.blocks(self.bounds, self.origin);
         self.own.info = lighting.inform(self.own.info);
         let contents = [
             ("lights", bytemuck::cast_slice(&lights).to_vec()),
@@ -345,6 +350,27 @@ fn hierarchy(shape: &Shape, emitters: &Emitters, instances: &[InstanceBlock]) ->
             .map_or(Mat4::IDENTITY, |b| Mat4::from_cols_array(&b.model))
     };
     bvh::build(shape, emitters, &model)
+}
+
+/// The counts and bounds of `sceneInfo`.
+fn info_of(
+    scene: &Scene,
+    origin: Vec3,
+    (low, high): (Vec3, Vec3),
+    shape: &Shape,
+) -> SceneInfoBlock {
+    SceneInfoBlock {
+        bounds_min: (low - origin).to_array(),
+        light_count: 0,
+        bounds_max: (high - origin).to_array(),
+        shadow_views: 0,
+        sky: [0.0; 3],
+        triangle_count: shape.triangle_count(),
+        draw_count: count(shape.draws.len()),
+        vertex_count: count(shape.positions.len() / 3),
+        instance_count: count(scene.instances.len()),
+        sky_turn: 0.0,
+    }
 }
 
 /// Buffers that all programs share.

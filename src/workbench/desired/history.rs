@@ -133,8 +133,8 @@ impl State {
 }
 
 impl Workbench {
-    /// Returns to the scene that is shown, and to all that was asked for before another one was,
-    /// because that one could not be loaded.
+    /// Returns to the shown scene and to the state before the request of another scene, which could
+    /// not be loaded.
     pub(crate) fn return_to_scene(&mut self) {
         let Some(before) = self.scene.before.take() else {
             return;

@@ -13,14 +13,14 @@ pub(super) type Ready = Vec<Vec<bool>>;
 /// generation need the steps that write it, and no others.
 pub(super) struct Dataflow {
     pub steps: Vec<StepFlow>,
-    /// By part: its last generation.
+    /// The last generation of each part.
     pub last: Vec<usize>,
     /// Number of generations. The first ones, one for each part, are the contents at the start of
     /// the frame.
     pub generations: usize,
-    /// By convergence group: parts of this frame's history, each with that of the last frame.
+    /// Parts of this frame's history, each with that of the last frame, by group.
     pub carried: Vec<Vec<(usize, usize)>>,
-    /// By part: whether its memory is shared, so that it holds nothing between frames.
+    /// Whether the memory of a part is shared, so that it holds nothing between frames.
     pub transient: Vec<bool>,
 }
 
@@ -157,7 +157,7 @@ impl Dataflow {
     }
 }
 
-/// By convergence group: this frame's parts of its history, each with last frame's.
+/// Parts of this frame's history, each with last frame's, by group.
 fn carried(plan: &Plan, places: &Places, odd: bool) -> Vec<Vec<(usize, usize)>> {
     let parts = |res, mips| places.of(plan, res, mips, odd);
     let copies = |res: &Res| match *res {

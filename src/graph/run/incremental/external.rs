@@ -15,9 +15,9 @@ pub(super) struct Externals {
     interface: &'static SceneInterface,
     /// Every distinct way to read one.
     reads: Vec<Read>,
-    /// By read: a hash of its bytes, and of the same bytes with frame counters at zero.
+    /// The hash of each read's bytes, and of the same bytes with frame counters at zero.
     hashes: Vec<[u64; 2]>,
-    /// By resource: the last bytes of a uniform block, a hash of those of a buffer; empty before
+    /// The last bytes of each uniform block, a hash of those of each buffer; empty before
     /// the first.
     contents: Vec<Vec<u8>>,
 }

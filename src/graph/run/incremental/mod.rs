@@ -68,7 +68,7 @@ pub enum Execution {
     #[serde(alias = "all")]
     #[value(alias = "all")]
     Full,
-    /// Those with output that may change. Pictures are equal, to the bit, to those of full
+    /// Passes with output that may change. Pictures are equal, to the bit, to those of full
     /// execution.
     #[serde(alias = "changed")]
     #[value(alias = "changed")]
@@ -77,7 +77,7 @@ pub enum Execution {
 
 /// The versions that all parts hold, and what decides about the next frame.
 pub(super) struct Versions {
-    /// By part: the version that it holds between frames.
+    /// The version that each part holds between frames.
     held: Vec<Version>,
     externals: Externals,
     /// The data flow of even frames, then of odd ones: the two copies of resources with a history
@@ -89,16 +89,16 @@ pub(super) struct Versions {
 /// The work of a frame.
 #[derive(PartialEq, Eq)]
 pub(super) struct Frame {
-    /// By step: whether it runs.
+    /// Whether each step runs.
     pub runs: Vec<bool>,
-    /// By group: whether it has converged and last frame's copies of its output are copied to those
+    /// Whether each group has converged and last frame's copies of its output are copied to those
     /// of this frame. In full execution this replaces the output of the group.
     pub carries: Vec<bool>,
 }
 
 /// The result of simulating a frame on versions.
 struct Simulated {
-    /// By part: the version at the end of the frame.
+    /// The version of each part at the end of the frame.
     now: Vec<Version>,
     ready: Ready,
     /// Hashes of the inputs, by group and step of its ring ([`Group::ring`]).
