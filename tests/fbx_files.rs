@@ -305,6 +305,7 @@ impl Opened {
                     LightKind::Spot { inner, outer } => {
                         format!("spot {:.0} {:.0}", inner.to_degrees(), outer.to_degrees())
                     }
+                    other => format!("{other:?}"),
                 };
                 same(found.as_str(), kind)?;
                 near(light.color.to_array(), color)?;

@@ -610,7 +610,7 @@ fn some_vertices_may_have_colours() {
 #[test]
 fn texels_of_the_picture_that_are_no_numbers_are_counted() {
     let home = home();
-    let shader = home.path().join("shaders/shade/shade.comp");
+    let shader = home.path().join("shaders/shade/deferred.glsl");
     let text = std::fs::read_to_string(&shader).unwrap();
     // A mistake in a shader, in one row of the picture.
     let wrong = "if (pixel.y == 5) total.g = uintBitsToFloat(pixel.x < 10 ? 0x7fc00000u : 0x7f800000u);\n    ";

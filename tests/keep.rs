@@ -5,13 +5,12 @@ mod common;
 use common::{conelab, device, fails, lab, root, scene, succeeds};
 use conelab::camera_path::{self, CameraPath, Key};
 use conelab::diagnostics::{At, Loc};
-use conelab::experiment::{
-    CameraChoice, Experiment, LightChange, PlacedCamera, checked_name, write,
-};
+use conelab::experiment::{CameraChoice, Experiment, PlacedCamera, checked_name, write};
 use conelab::graph::load::Folders;
 use conelab::graph::param::{Kind, Params};
 use conelab::lab::load;
 use conelab::results::capture;
+use conelab::scene::LightFields;
 use glam::{Mat4, Vec3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -178,7 +177,7 @@ fn values(params: &Params) -> impl Strategy<Value = Vec<Option<String>>> + use<>
 type Extras = (
     Option<PlacedCamera>,
     Option<(f32, f32, f32)>,
-    Option<LightChange>,
+    Option<LightFields>,
     f64,
 );
 
@@ -194,11 +193,10 @@ fn extras() -> impl Strategy<Value = Extras> {
         });
     let light =
         (prop::option::of(colour()), prop::option::of(0f64..80.0)).prop_map(|(color, inner)| {
-            LightChange {
-                color,
-                inner,
-                ..LightChange::default()
-            }
+            let color = color.map(|c| format!("color: {c:?}"));
+            let inner = inner.map(|i| format!("inner: {i:?}"));
+            let fields: Vec<String> = [color, inner].into_iter().flatten().collect();
+            ron::from_str(&format!("({})", fields.join(", "))).unwrap()
         });
     (
         prop::option::of(camera),
@@ -233,7 +231,7 @@ fn experiments_that_are_written_are_read_as_they_were() {
             (experiment.sky, experiment.time) = (sky, time);
             experiment
                 .lights
-                .extend(light.map(|l| (named("a \"lamp\" \\ of\n mine"), l)));
+                .extend(light.clone().map(|l| (named("a \"lamp\" \\ of\n mine"), l)));
             // The file of the case before is there: this is an edit of it, with whatever it held.
             write(&experiment, &defaults, &target, true).unwrap();
             let found = Experiment::read(&target).unwrap();
@@ -246,7 +244,7 @@ fn experiments_that_are_written_are_read_as_they_were() {
                 (&found.camera, found.sky, found.time),
                 (&experiment.camera, sky, time)
             );
-            prop_assert_eq!(found.lights.first().map(|l| l.1), light);
+            prop_assert_eq!(found.lights.first().map(|l| l.1.clone()), light);
             prop_assert_eq!(
                 (&found.graph, &found.scene, found.size),
                 (&experiment.graph, &experiment.scene, (64, 64))
@@ -460,11 +458,15 @@ fn an_experiment_changes_the_light_of_its_scene() {
     );
     assert_eq!(
         light("position: (inf, 0, 0)"),
-        format!("{place}23: error: light 'lamp': its position must be finite")
+        format!("{place}23: error: light 'lamp': its position must be within 1e9 m of the origin")
     );
     assert_eq!(
         light("outer: 90"),
-        format!("{place}23: error: light 'lamp': its angles must be 0 to 89 degrees")
+        format!("{place}23: error: light 'lamp': its outer must be 0.001 to 89 deg")
+    );
+    assert_eq!(
+        light("radius: 1"),
+        format!("{place}15: error: light 'lamp' is a spot light, which has no `radius`")
     );
     assert_eq!(
         light("inner: 80"),
@@ -645,13 +647,9 @@ fn the_method_is_captured_and_replayed() {
             ("cone_count", "5"),
         ],
     );
-    experiment.lights.push((
-        named("lamp"),
-        LightChange {
-            color: Some((9.0, 8.0, 7.0)),
-            ..LightChange::default()
-        },
-    ));
+    experiment
+        .lights
+        .push((named("lamp"), ron::from_str("(color: (9, 8, 7))").unwrap()));
     let what = capture::What {
         resources: vec![capture::Resource {
             name: "voxelRadiance".into(),

@@ -445,6 +445,64 @@ const ROWS: &[Row] = &[
             assert_eq!((s.sky, s.warnings.len()), (Vec3::ZERO, 0));
         },
     ),
+    // The example of the draft, and a scaled node: sizes grow by its largest scale.
+    (
+        "LightsArea",
+        |m| {
+            m.root["extensionsUsed"] = json!(["EXT_lights_area"]);
+            m.root["extensions"] = json!({ "EXT_lights_area": { "lights": [
+                { "color": [1, 1, 1], "intensity": 100, "type": "rect", "size": 1, "rect": { "aspect": 2 } },
+                { "color": [1, 0.5, 0.25], "intensity": 8, "type": "disk", "size": 1.5 },
+                { "type": "sphere" }, { "type": "disk", "size": 0 },
+            ] } });
+            let half = 0.5f64.sqrt();
+            for (light, more) in [
+                json!({ "rotation": [-half, 0, 0, half], "translation": [1, 2, 3] }),
+                json!({ "scale": [1, -2, 0.5] }),
+                json!({}),
+                json!({}),
+                json!({}),
+            ]
+            .into_iter()
+            .enumerate()
+            {
+                let mut node = more;
+                node["extensions"] = json!({ "EXT_lights_area": { "light": light } });
+                m.node(node);
+            }
+            placed_square(m, None, json!({}));
+        },
+        |s| {
+            let [panel, disc] = &s.lights[..] else {
+                panic!("{:?}", s.lights);
+            };
+            let kind = LightKind::Rectangle {
+                width: 2.0,
+                height: 1.0,
+            };
+            assert_eq!((panel.kind, panel.color), (kind, Vec3::splat(100.0)));
+            assert!(panel.direction.abs_diff_eq(Vec3::NEG_Y, 1e-6));
+            assert!(panel.up.abs_diff_eq(Vec3::NEG_Z, 1e-6));
+            assert_eq!(panel.position, Vec3::new(1.0, 2.0, 3.0));
+            let kind = LightKind::Disc { radius: 1.5 };
+            assert_eq!((disc.kind, disc.color), (kind, Vec3::new(8.0, 4.0, 2.0)));
+            warned(
+                s,
+                "lights that have a shape other than rect and disk are left out",
+                1,
+            );
+            warned(
+                s,
+                "lights that have a size that is not above 0 are left out",
+                1,
+            );
+            warned(
+                s,
+                "lights that have no description in the file are left out",
+                1,
+            );
+        },
+    ),
     (
         "NegativeIntensity",
         |m| {

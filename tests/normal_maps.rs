@@ -7,7 +7,7 @@ use base64::Engine;
 use common::{assert_clean, experiment, lab, root};
 use conelab::experiment::{CameraChoice, Experiment, PlacedCamera};
 use conelab::measure::reference::{Goal, gather};
-use conelab::scene::{Light, LightKind, Scene};
+use conelab::scene::{Light, Scene};
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 use std::ops::ControlFlow;
@@ -256,11 +256,10 @@ fn sun(direction: Vec3) -> Light {
     let color = Vec3::splat(std::f32::consts::PI);
     Light {
         name: "sun".into(),
-        kind: LightKind::Directional,
         color,
-        position: Vec3::ZERO,
         direction: direction.normalize(),
         shadow: false,
+        ..Light::default()
     }
 }
 

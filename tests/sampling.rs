@@ -7,7 +7,7 @@ use common::model_file::{Model, U8, U16};
 use common::{assert_clean, experiment, floats, home, lab, root};
 use conelab::experiment::{CameraChoice, Experiment, PlacedCamera};
 use conelab::measure::reference::{Goal, gather};
-use conelab::scene::{Instance, Light, LightKind, Material, Mesh, Scene, Submesh, Vertex};
+use conelab::scene::{Instance, Light, Material, Mesh, Scene, Submesh, Vertex};
 use glam::{DVec2, DVec3, Mat4, Vec3, Vec4};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
@@ -290,11 +290,10 @@ fn opened() -> (Scene, Vec<Expected>) {
 fn sun() -> Light {
     Light {
         name: "sun".into(),
-        kind: LightKind::Directional,
         color: Vec3::splat(PI as f32),
-        position: Vec3::ZERO,
         direction: Vec3::NEG_Z,
         shadow: false,
+        ..Light::default()
     }
 }
 

@@ -1,20 +1,9 @@
 // Radiance at the end of a path, from its first ray on.
 #ifndef REFERENCE_INCOMING_GLSL
 #define REFERENCE_INCOMING_GLSL
-#include "lights/direct.glsl"
-#include "reference/hit.glsl"
-#include "common/ggx.glsl"
+#include "reference/direct.glsl"
 #include "reference/sky.glsl"
-#include "common/random.glsl"
 #include "reference/emitters.glsl"
-
-float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
-    if (light.of_sky != 0) return 0.0; // part of the sky image
-    if (light.shadow_view < 0) return 1.0; // casts no shadow
-    vec3 from = offsetPoint(p, face);
-    float end = light.kind == LIGHT_DIRECTIONAL ? 1e30 : distance(light.position, from) * 0.9999;
-    return blocked(Ray(from, to_light, end)) ? 0.0 : 1.0;
-}
 
 // Radiance that arrives at p along -d over at most params.bounces path segments, including this ray. density:
 // pdf of d. sun: the sun of a sky image, returned separately if the first ray escapes.
@@ -36,7 +25,7 @@ vec3 incoming(vec3 p, vec3 d, float density, inout Random random, out bool escap
         }
         SurfaceHit h = surfaceOf(hit, ray, NO_FOOTPRINT);
         vec3 emitted = h.emission * shareOfRay(density, h, hit.t);
-        sum += weight * (emitted + directLight(h.surface, h.position, h.face, h.view));
+        sum += weight * (emitted + directLight(h, random));
         float shine = luminance(fresnel(h.surface, max(dot(h.surface.normal, h.view), 0.0)));
         float probability = clamp(shine / max(shine + luminance(h.surface.albedo), 1e-6), 0.05, 0.95);
         bool last = bounce == params.bounces;

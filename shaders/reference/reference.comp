@@ -49,7 +49,7 @@ void main() {
     if (hit.triangle != NO_HIT) {
         SurfaceHit h = surfaceOf(hit, ray, f);
         vec3 p = offsetPoint(h.position, h.face);
-        direct = directLight(h.surface, h.position, h.face, h.view);
+        direct = directLight(h, random);
         vec4 v = next4(random);
         LobeSample one = diffuseSample(h.surface, h.face, v.xy),
             two = specularSample(h.surface, h.face, h.view, v.zw);

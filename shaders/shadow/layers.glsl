@@ -46,7 +46,7 @@ const float SHADOW_BORDER = 8.0;
 
 // The finest layer of a light that shows p.
 int shadowLayerOf(Light light, vec3 p) {
-    if (light.kind == LIGHT_POINT) return light.shadow_view + cubeFace(p - light.position);
+    if (castsAround(light)) return light.shadow_view + cubeFace(p - light.position);
     int layer = light.shadow_view;
     if (params.nested_maps == 1 || light.kind != LIGHT_DIRECTIONAL) return layer;
     for (int finer = shadowLayers.layers[layer].finer; finer >= 0; finer = shadowLayers.layers[layer].finer) {

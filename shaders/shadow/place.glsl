@@ -54,7 +54,7 @@ void main() {
     for (uint i = 0; i < sceneInfo.light_count; i++) {
         Light light = lights.lights[i];
         if (light.shadow_view < 0) continue;
-        int views = light.kind == LIGHT_POINT ? 6 : 1;
+        int views = castsAround(light) ? 6 : 1;
         for (int layer = light.shadow_view; layer < light.shadow_view + views; layer++) {
             ShadowView view = shadowViews.views[layer];
             shadowLayers.layers[layer] = ShadowLayer(view.view_projection, view.texel_size_and_depth.x,

@@ -1,5 +1,4 @@
-// Views of the lights: one for a directional or spot light, covering all that it lights; six for a point
-// light.
+// Views of the lights: one for a directional or spot light, covering all that it lights; six for any other.
 #ifndef SHADOW_VIEWS_GLSL
 #define SHADOW_VIEWS_GLSL
 

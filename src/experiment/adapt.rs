@@ -1,9 +1,9 @@
 //! Applies an experiment's changes to the lighting of its scene.
 
+use super::Experiment;
 use super::ExperimentError;
-use super::{Experiment, LightChange};
 use crate::diagnostics::{Diagnostic, Loc};
-use crate::scene::{Light, LightKind, Scene, environment};
+use crate::scene::{Scene, environment};
 use glam::Vec3;
 use std::path::Path;
 use std::sync::Arc;
@@ -34,7 +34,7 @@ impl Experiment {
             let mut known = false;
             for light in scene.lights.iter_mut().filter(|l| l.name == name.value) {
                 known = true;
-                if let Err(message) = apply(change, light) {
+                if let Err(message) = change.apply(light) {
                     errors.push(
                         self.sources
                             .error(name.at, format!("light '{}' {message}", name.value)),
@@ -110,61 +110,5 @@ impl Experiment {
         self.sources
             .error(name.at, message)
             .nearest(&name.value, scene.lights.iter().map(|l| l.name.as_str()))
-    }
-}
-
-/// The change that turns any light of the same kind and name into this one.
-pub(super) fn change_to(light: &Light) -> LightChange {
-    let directed = !matches!(light.kind, LightKind::Point);
-    let placed = !matches!(light.kind, LightKind::Directional);
-    let angles = match light.kind {
-        LightKind::Spot { inner, outer } => {
-            Some((f64::from(inner).to_degrees(), f64::from(outer).to_degrees()))
-        }
-        _ => None,
-    };
-    LightChange {
-        color: Some(light.color.into()),
-        direction: directed.then(|| light.direction.into()),
-        position: placed.then(|| light.position.into()),
-        inner: angles.map(|a| a.0),
-        outer: angles.map(|a| a.1),
-    }
-}
-
-fn apply(change: &LightChange, light: &mut Light) -> Result<(), String> {
-    light.color = change.color.map_or(light.color, Vec3::from);
-    match (change.position, light.kind) {
-        (Some(_), LightKind::Directional) => {
-            return Err("is directional and has no position".into());
-        }
-        (Some(position), _) => light.position = position.into(),
-        (None, _) => {}
-    }
-    match (change.direction, light.kind) {
-        (Some(_), LightKind::Point) => return Err("is a point and has no direction".into()),
-        (Some(direction), _) => light.direction = unit(direction.into()),
-        (None, _) => {}
-    }
-    if change.inner.is_none() && change.outer.is_none() {
-        return Ok(());
-    }
-    let LightKind::Spot { inner, outer } = &mut light.kind else {
-        return Err("is no spot and has no angles".into());
-    };
-    *inner = change.inner.map_or(*inner, |a| a.to_radians() as f32);
-    *outer = change.outer.map_or(*outer, |a| a.to_radians() as f32);
-    if *inner >= *outer {
-        return Err("needs an inner angle that is less than its outer one".into());
-    }
-    Ok(())
-}
-
-/// Unit vectors keep their bits, so that a written direction is read back unchanged.
-fn unit(v: Vec3) -> Vec3 {
-    if v.is_normalized() {
-        v
-    } else {
-        v.try_normalize().unwrap_or(Vec3::NEG_Y)
     }
 }

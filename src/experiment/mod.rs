@@ -16,7 +16,7 @@ pub use write::write;
 use crate::diagnostics::{At, Diagnostic, Loc, Sources};
 use crate::files::FileError;
 use crate::graph::param::Params;
-use crate::scene::{Camera, MAX_COORDINATE, environment};
+use crate::scene::{Camera, LightFields, MAX_COORDINATE, environment};
 use glam::Vec3;
 use serde::Deserialize;
 
@@ -120,22 +120,6 @@ impl From<&Camera> for PlacedCamera {
     }
 }
 
-/// Changes to a light; absent fields keep the scene's value.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
-#[serde(default, deny_unknown_fields)]
-pub struct LightChange {
-    /// Irradiance (directional) or radiant intensity, not negative.
-    pub color: Option<(f32, f32, f32)>,
-    /// Propagation direction, not zero; need not have unit length.
-    pub direction: Option<(f32, f32, f32)>,
-    /// Position, m.
-    pub position: Option<(f32, f32, f32)>,
-    /// Half-angle of full intensity of a spot (degrees).
-    pub inner: Option<f64>,
-    /// Outer half-angle of a spot (degrees).
-    pub outer: Option<f64>,
-}
-
 /// Changes to the environment map; absent fields keep the scene's value.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(default, deny_unknown_fields)]
@@ -184,7 +168,7 @@ pub struct Experiment {
     /// Changes to the environment map.
     pub environment: Option<Loc<EnvironmentChange>>,
     /// Changes to the scene's lights, by name.
-    pub lights: Vec<(Loc<String>, LightChange)>,
+    pub lights: Vec<(Loc<String>, LightFields)>,
     /// (name, value as RON), with positions.
     pub params: Vec<(Loc<String>, String)>,
     /// Sources of positions in messages.

@@ -1,11 +1,12 @@
 //! Reading experiments.
 
 use super::{
-    CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, LightChange,
-    PlacedCamera, check_size,
+    CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, PlacedCamera,
+    check_size,
 };
 use crate::diagnostics::{Diagnostic, Entries, Loc, RawText, Severity, Sources};
 use crate::files::{path_of, spec_of};
+use crate::scene::LightFields;
 use glam::Vec3;
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor, value::MapAccessDeserializer};
@@ -48,7 +49,7 @@ struct ExperimentFile {
     #[serde(default)]
     environment: Option<Loc<EnvironmentChange>>,
     #[serde(default)]
-    lights: Entries<LightChange>,
+    lights: Entries<LightFields>,
     #[serde(default)]
     params: Entries<RawText>,
 }
@@ -97,7 +98,7 @@ fn parse(path: &Path, sources: Sources, file: u32) -> Result<Experiment, Vec<Dia
             .filter_map(|(at, check)| Some(sources.error(at, check.err()?))),
     );
     for (name, change) in &parsed.lights.0 {
-        if let Err(message) = check_light(&change.value) {
+        if let Err(message) = change.value.check() {
             errors.push(sources.error(change.at, format!("light '{}': {message}", name.value)));
         }
     }
@@ -156,29 +157,6 @@ pub(super) fn check_sky(sky: (f32, f32, f32)) -> Result<(), String> {
 fn is_colour(c: (f32, f32, f32)) -> bool {
     let c = Vec3::from(c);
     c.is_finite() && c.min_element() >= 0.0
-}
-
-fn check_light(change: &LightChange) -> Result<(), String> {
-    if change.color.is_some_and(|c| !is_colour(c)) {
-        return Err("its color must be finite and not negative".into());
-    }
-    if change.position.is_some_and(|p| !Vec3::from(p).is_finite()) {
-        return Err("its position must be finite".into());
-    }
-    if change
-        .direction
-        .is_some_and(|d| Vec3::from(d).try_normalize().is_none())
-    {
-        return Err("its direction must be finite and not zero".into());
-    }
-    if [change.inner, change.outer]
-        .iter()
-        .flatten()
-        .any(|a| !(0.0..=89.0).contains(a))
-    {
-        return Err("its angles must be 0 to 89 degrees".into());
-    }
-    Ok(())
 }
 
 /// The same change with its file looked up next to the experiment first.

@@ -1,13 +1,12 @@
 //! Writes experiments: only differences from the defaults, keeping the comments of a replaced file.
 
 use super::ExperimentError;
-use super::adapt::change_to;
 use super::spans::{self, Body, Edits};
-use super::{CameraChoice, EnvironmentChange, Experiment, FIELDS, LightChange, PlacedCamera};
+use super::{CameraChoice, EnvironmentChange, Experiment, FIELDS, PlacedCamera};
 use crate::diagnostics::{At, Diagnostic, Loc};
 use crate::files::FileError;
 use crate::graph::param::Params;
-use crate::scene::Scene;
+use crate::scene::{LightFields, Scene};
 use std::path::{Component, Path, PathBuf};
 
 /// Writes an experiment to `path`: graph, scene, camera, size, explicit time and lighting, and the
@@ -106,7 +105,7 @@ pub fn resolved_text(
                     value: l.name.clone(),
                     at: At::default(),
                 },
-                change_to(l),
+                l.fields(),
             )
         })
         .collect();
@@ -174,11 +173,11 @@ fn read_back(
     }
 }
 
-fn changes(experiment: &Experiment) -> Vec<(&str, LightChange)> {
+fn changes(experiment: &Experiment) -> Vec<(&str, &LightFields)> {
     let mut list: Vec<_> = experiment
         .lights
         .iter()
-        .map(|(name, change)| (name.value.as_str(), *change))
+        .map(|(name, change)| (name.value.as_str(), change))
         .collect();
     list.sort_by_key(|l| l.0);
     list
@@ -314,30 +313,12 @@ pub(super) fn camera_text(camera: &CameraChoice) -> String {
     }
 }
 
-fn light_text(change: &LightChange) -> String {
-    let vectors = [
-        ("color", change.color),
-        ("direction", change.direction),
-        ("position", change.position),
-    ];
-    let angles = [("inner", change.inner), ("outer", change.outer)];
-    let parts = vectors
-        .iter()
-        .filter_map(|(n, v)| v.map(|v| format!("{n}: {}", vector(v))));
-    let parts = parts.chain(
-        angles
-            .iter()
-            .filter_map(|(n, a)| a.map(|a| format!("{n}: {a:?}"))),
-    );
-    format!("({})", parts.collect::<Vec<_>>().join(", "))
-}
-
 impl Wanted<'_> {
     fn lights(&self) -> Vec<(String, String)> {
         self.experiment
             .lights
             .iter()
-            .map(|(name, change)| (name.value.clone(), light_text(change)))
+            .map(|(name, change)| (name.value.clone(), change.to_text()))
             .collect()
     }
 }
@@ -408,7 +389,7 @@ fn edited(wanted: &Wanted, defaults: &Params) -> Option<String> {
     let same_light = |name: &str, _: &str, new: &str| {
         old.lights
             .iter()
-            .any(|(n, change)| n.value == name && light_text(change) == new)
+            .any(|(n, change)| n.value == name && change.to_text() == new)
     };
     // Explicit defaults of the author are kept while they remain valid.
     let mut params = wanted.params.clone();

@@ -177,7 +177,8 @@ impl Session {
         let same = lights.len() == self.scene.lights.len()
             && view::shadow_view_count(lights) == view::shadow_view_count(&self.scene.lights)
             && view::directional_view_count(lights)
-                == view::directional_view_count(&self.scene.lights);
+                == view::directional_view_count(&self.scene.lights)
+            && view::area_light_count(lights) == view::area_light_count(&self.scene.lights);
         if same {
             self.light_updates = self.scene_gpu.set_lights(lights, sky);
         }

@@ -2,6 +2,7 @@
 
 use super::interface::blocks::{CameraBlock, LightBlock, ShadowBlock};
 use crate::experiment::PlacedCamera;
+use crate::scene::light::Views;
 use crate::scene::{Camera, Light, LightKind, Scene, defaults};
 use glam::{Mat4, Vec3, camera::rh::proj::vulkan};
 
@@ -126,25 +127,25 @@ pub(super) fn lights(
             ..light.clone()
         };
         let first = i32::try_from(views.len()).unwrap_or(i32::MAX);
-        let (kind, inner, outer) = match light.kind {
-            LightKind::Directional => (0, 0.0, 0.0),
-            LightKind::Point => (1, 0.0, 0.0),
-            LightKind::Spot { inner, outer } => (2, inner, outer),
+        let (inner, outer) = match light.kind {
+            LightKind::Spot { inner, outer } => (inner, outer),
+            _ => (0.0, 0.0),
         };
+        let (side, top) = light.half_extents();
         if light.shadow {
             views.extend(shadow_views(light, bounds, number));
         }
         blocks.push(LightBlock {
             position: light.position.to_array(),
-            kind,
+            kind: u32::try_from(light.kind.index()).unwrap_or(u32::MAX),
             direction: light.direction.to_array(),
             shadow_view: if light.shadow { first } else { -1 },
             color: light.color.to_array(),
-            range: 0.0,
-            cos_inner: inner.cos(),
-            cos_outer: outer.cos(),
             of_sky: u32::from(number as usize >= own),
-            pad: 0.0,
+            side: side.to_array(),
+            cos_inner: inner.cos(),
+            top: top.to_array(),
+            cos_outer: outer.cos(),
         });
     }
     (blocks, views)
@@ -181,8 +182,8 @@ fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<Sh
         .map(|c| c.distance(light.position))
         .fold(2.0 * near, f32::max)
         * 1.01;
-    match light.kind {
-        LightKind::Directional => {
+    match light.kind.row().views {
+        Views::Parallel => {
             // Orthographic, fitted to the scene's bounds, so depth is linear and no texel is wasted
             // on the outside.
             let view = look((low + high) * 0.5, light.direction);
@@ -198,7 +199,8 @@ fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<Sh
             let size = most - least;
             vec![block(projection * view, [size.x.max(size.y), size.z, 0.0])]
         }
-        LightKind::Spot { outer, .. } => {
+        Views::Cone => {
+            let outer = light.kind.numbers()[1];
             let angle = (2.0 * outer).clamp(0.02, 2.9);
             let projection = vulkan::perspective(angle, 1.0, near, far);
             vec![block(
@@ -206,7 +208,7 @@ fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<Sh
                 [2.0 * (angle * 0.5).tan(), far, 1.0],
             )]
         }
-        LightKind::Point => [
+        Views::Cube => [
             Vec3::X,
             Vec3::NEG_X,
             Vec3::Y,
@@ -229,24 +231,21 @@ fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<Sh
 
 /// How many directional lights cast shadows.
 pub fn directional_view_count(lights: &[Light]) -> u32 {
-    lights
-        .iter()
-        .filter(|l| l.shadow && l.kind == LightKind::Directional)
-        .map(|_| 1)
-        .sum()
+    let directional = |l: &&Light| l.shadow && l.kind == LightKind::Directional;
+    lights.iter().filter(directional).map(|_| 1).sum()
 }
 
-/// How many shadow maps a scene needs: one a directional or spot light, six a point light.
+/// How many shadow maps a scene needs: one a directional or spot light, six any other.
 pub fn shadow_view_count(lights: &[Light]) -> u32 {
-    lights
-        .iter()
-        .filter(|l| l.shadow)
-        .map(|l| {
-            if matches!(l.kind, LightKind::Point) {
-                6
-            } else {
-                1
-            }
-        })
-        .sum()
+    let views = |l: &Light| match l.kind.row().views {
+        Views::Parallel | Views::Cone => 1,
+        Views::Cube => 6,
+    };
+    lights.iter().filter(|l| l.shadow).map(views).sum()
+}
+
+/// How many lights have an extent.
+pub fn area_light_count(lights: &[Light]) -> u32 {
+    let is_area = |l: &&Light| l.half_extents().0 != Vec3::ZERO;
+    lights.iter().filter(is_area).map(|_| 1).sum()
 }

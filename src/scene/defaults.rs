@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 
-use super::{Camera, Light, LightKind, Scene};
+use super::{Camera, Light, Scene};
 
 /// Radiance of the sky over a model file without lights.
 pub(super) const SKY: Vec3 = Vec3::new(0.6, 0.8, 1.0);
@@ -24,11 +24,9 @@ const FOV_Y: f32 = 58.3;
 pub(super) fn sun() -> Light {
     Light {
         name: "sun".into(),
-        kind: LightKind::Directional,
         color: Vec3::new(10.0, 9.6, 8.8),
-        position: Vec3::ZERO,
         direction: Vec3::new(-0.38, -0.88, 0.2).normalize(),
-        shadow: true,
+        ..Light::default()
     }
 }
 

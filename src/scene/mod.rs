@@ -15,6 +15,7 @@ mod fbx;
 mod file;
 mod formats;
 mod gltf;
+pub(crate) mod light;
 mod limits;
 mod lookup;
 mod mesh;
@@ -42,6 +43,7 @@ pub use environment::SUN;
 pub(crate) use environment::{Environment, SkyPicture};
 pub use error::SceneError;
 pub(crate) use formats::{SCENE_FILE, extensions, model_extensions};
+pub use light::{Light, LightFields, LightKind};
 pub(crate) use limits::MAX_COORDINATE;
 pub use lookup::{Lookup, Lookups, Wrap};
 pub use mesh::Side;
@@ -71,7 +73,7 @@ pub struct Scene {
     pub movers: Vec<Mover>,
     /// Deformers, at most one per mesh.
     pub deformers: Vec<Deformer>,
-    /// Punctual lights.
+    /// Lights.
     pub lights: Vec<Light>,
     /// Views by name; `default` is used if a picture names none.
     pub cameras: IndexMap<String, Camera>,
@@ -313,40 +315,6 @@ pub struct Instance {
     pub transform: Mat4,
     /// Index into [`Scene::movers`]; `None` for a static instance.
     pub mover: Option<u32>,
-}
-
-/// Emission pattern of a light.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LightKind {
-    /// Parallel rays, for example of the sun.
-    Directional,
-    /// Uniform in all directions.
-    Point,
-    /// Half-angles of the cone in radians: full intensity inside `inner`, none outside `outer`.
-    Spot {
-        /// Radians.
-        inner: f32,
-        /// Radians, above `inner`.
-        outer: f32,
-    },
-}
-
-/// A punctual light. Emissive surfaces are materials instead.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Light {
-    /// Name that experiments use to change the light.
-    pub name: String,
-    /// Emission pattern.
-    pub kind: LightKind,
-    /// Irradiance on a facing surface (W/m^2) for a directional light, radiant intensity (W/sr)
-    /// otherwise.
-    pub color: Vec3,
-    /// World (m); ignored for a directional light.
-    pub position: Vec3,
-    /// Unit length, the way the light travels.
-    pub direction: Vec3,
-    /// Whether it has a shadow map.
-    pub shadow: bool,
 }
 
 /// A perspective camera.

@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
-use super::{Camera, Light, LightKind, Material, Scene, Texture};
+use super::light::Quantity;
+use super::{Camera, Light, Material, Scene, Texture};
 
 impl Scene {
     /// Counts, bounds, materials, textures, lights, cameras and warnings as text.
@@ -34,12 +35,17 @@ impl Scene {
             })
         };
         let light = |l: &Light| {
-            let kind = match l.kind {
-                LightKind::Directional => json!("directional"),
-                LightKind::Point => json!("point"),
-                LightKind::Spot { inner, outer } => {
-                    json!({ "spot": { "inner": inner.to_degrees(), "outer": outer.to_degrees() } })
-                }
+            let name = l.kind.row().name.to_lowercase();
+            let numbers: Map<_, _> = l
+                .fields()
+                .numbers()
+                .iter()
+                .map(|(f, x)| (f.name.into(), json!(x)))
+                .collect();
+            let kind = if numbers.is_empty() {
+                json!(name)
+            } else {
+                json!({ name: numbers })
             };
             json!({
                 "name": l.name, "kind": kind, "color": l.color.to_array(), "position": l.position.to_array(),
@@ -173,20 +179,28 @@ impl Scene {
         let lights = self.all_lights();
         writeln!(out, "\nlights     {}", lights.len())?;
         for light in &lights {
-            let (color, position, direction) = (light.color, light.position, light.direction);
             let shadow = if light.shadow { "shadow" } else { "no shadow" };
-            let about = match light.kind {
-                LightKind::Directional => {
-                    format!("directional, irradiance {color:.2}, toward {direction:.3}")
+            let kind = light.kind.row();
+            write!(
+                out,
+                "  {}  {}, {} {:.2}",
+                light.name,
+                kind.name.to_lowercase(),
+                kind.color,
+                light.color
+            )?;
+            let fields = light.fields();
+            for (field, v) in fields.vectors() {
+                match field.quantity {
+                    Quantity::Color => {}
+                    Quantity::Position => write!(out, ", at {v:.2}")?,
+                    _ => write!(out, ", {} {v:.3}", field.name)?,
                 }
-                LightKind::Point => format!("point, intensity {color:.2}, at {position:.2}"),
-                LightKind::Spot { inner, outer } => format!(
-                    "spot, intensity {color:.2}, at {position:.2} toward {direction:.3}, {:.1} to {:.1} deg",
-                    inner.to_degrees(),
-                    outer.to_degrees()
-                ),
-            };
-            writeln!(out, "  {}  {about}, {shadow}", light.name)?;
+            }
+            for (field, x) in fields.numbers() {
+                write!(out, ", {} {x:.2} {}", field.name, field.quantity.unit())?;
+            }
+            writeln!(out, ", {shadow}")?;
         }
         Ok(())
     }

@@ -138,6 +138,10 @@ fn light(l: &Light) -> Option<&'static str> {
         LightKind::Spot { inner, outer } => {
             0.0 <= inner && inner <= outer && outer <= std::f32::consts::FRAC_PI_2
         }
+        LightKind::Rectangle { width, height } => {
+            [width, height].iter().all(|x| *x > 0.0 && x.is_finite())
+        }
+        LightKind::Disc { radius } => radius > 0.0 && radius.is_finite(),
         LightKind::Directional | LightKind::Point => true,
     };
     match () {

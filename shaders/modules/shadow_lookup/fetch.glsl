@@ -2,8 +2,12 @@
 // Everything outside the map is lit.
 uniform sampler2DArray shadowDepths;
 
+float shadowDepth(int layer, vec2 at) {
+    return textureLod(shadowDepths, vec3(at, layer), 0.0).r;
+}
+
 float shadowLit(int layer, vec3 at) {
-    return at.z <= textureLod(shadowDepths, vec3(at.xy, layer), 0.0).r ? 1.0 : 0.0;
+    return at.z <= shadowDepth(layer, at.xy) ? 1.0 : 0.0;
 }
 
 // Depths of the four texels around a position, in the order of textureGather: (0, 1), (1, 1), (1, 0), (0, 0).

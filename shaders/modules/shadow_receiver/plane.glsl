@@ -1,6 +1,9 @@
 // Compares with the depth of the receiver's plane at each texel (Isidoro 2006), so an offset of a few
 // hundredths of a texel suffices.
 #include "common/frame.glsl"
+#ifdef AREA_LIGHTS
+#include "shadow/soft.glsl"
+#endif
 
 // Slope of depth over the plane through p [depth per map width]. It is constant over a plane, in perspective
 // too, so distant points are used, which preserves digits. q: p in the map.
@@ -36,6 +39,9 @@ bool hiddenByItself(int layer, vec3 q, vec2 slope, float deep) {
 
 float lightVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     if (light.shadow_view < 0) return 1.0;
+#ifdef AREA_LIGHTS
+    if (isArea(light)) return visibleArea(light, p, n);
+#endif
     int layer = shadowLayerOf(light, p);
     float texel = shadowTexel(layer, light, p);
     vec3 from = offSurface(p, n, to_light, params.shadow_bias * texel);

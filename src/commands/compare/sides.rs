@@ -156,7 +156,7 @@ fn same_view(a: &Experiment, b: &Experiment) -> bool {
     let lights = |e: &Experiment| {
         e.lights
             .iter()
-            .map(|(name, l)| (name.value.clone(), *l))
+            .map(|(name, l)| (name.value.clone(), l.clone()))
             .collect::<Vec<_>>()
     };
     let mut seen = FIELDS

@@ -104,11 +104,11 @@ block! {
         direction: [f32; 3],
         shadow_view: i32,
         color: [f32; 3],
-        range: f32,
-        cos_inner: f32,
-        cos_outer: f32,
         of_sky: u32,
-        pad: f32,
+        side: [f32; 3],
+        cos_inner: f32,
+        top: [f32; 3],
+        cos_outer: f32,
     }
 }
 

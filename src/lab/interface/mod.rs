@@ -4,7 +4,7 @@
 
 pub(super) mod blocks;
 
-use super::view::{directional_view_count, shadow_view_count};
+use super::view::{area_light_count, directional_view_count, shadow_view_count};
 use crate::diagnostics::Diagnostic;
 use crate::graph::Graph;
 use crate::graph::expr::{Env, Var};
@@ -92,6 +92,7 @@ const VARIABLES: &[Variable] = &[
         directional_view_count(&f.lights).into()
     }),
     ("light_count", |f| f.lights.len() as f64),
+    ("area_lights", |f| area_light_count(&f.lights).into()),
     ("triangle_count", |f| f.scene.triangle_count() as f64),
     ("emitting_triangle_count", |f| {
         f.scene.emitting_triangle_count() as f64

@@ -1,7 +1,7 @@
 //! A hash of a scene's content.
 
 use crate::files::hex;
-use crate::scene::{LightKind, Lookups, Material, Scene, Vertex};
+use crate::scene::{Lookups, Material, Scene, Vertex};
 use sha2::{Digest, Sha256};
 use std::mem::offset_of;
 
@@ -55,16 +55,15 @@ pub fn scene_hash(scene: &Scene) -> String {
     }
     hash.count(scene.lights.len());
     for light in &scene.lights {
-        let (kind, inner, outer) = match light.kind {
-            LightKind::Directional => (0, 0.0, 0.0),
-            LightKind::Point => (1, 0.0, 0.0),
-            LightKind::Spot { inner, outer } => (2, inner, outer),
-        };
+        let kind = u32::try_from(light.kind.index()).unwrap_or(u32::MAX);
         hash.words(&[kind, u32::from(light.shadow)]);
-        hash.floats(&[inner, outer]);
+        hash.floats(&light.kind.numbers());
         [light.color, light.position, light.direction]
             .iter()
             .for_each(|v| hash.floats(&v.to_array()));
+        if let Some(up) = light.fields().up() {
+            hash.floats(&up.to_array());
+        }
     }
     // Only values that differ from the default, so that hashes of older scenes stay valid.
     let plain = Material::default().dielectric();

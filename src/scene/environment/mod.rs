@@ -5,7 +5,7 @@ mod file;
 mod level;
 mod sun;
 
-use super::{Light, LightKind, Scene, SceneError};
+use super::{Light, Scene, SceneError};
 use glam::{Quat, Vec3};
 use std::f32::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
@@ -87,11 +87,9 @@ impl Environment {
         let sun = self.picture.sun.as_ref()?;
         Some(Light {
             name: SUN.into(),
-            kind: LightKind::Directional,
             color: sun.irradiance * factor,
-            position: Vec3::ZERO,
             direction: -(Quat::from_rotation_y(rotation.to_radians()) * sun.direction).normalize(),
-            shadow: true,
+            ..Light::default()
         })
     }
 }

@@ -5,7 +5,7 @@ use crate::files::FileError;
 use std::path::Path;
 
 use glam::{Mat3, Quat, Vec3};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::motion::{self, Clip};
 use super::textures::Textures;
@@ -59,17 +59,12 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
             node,
         );
     }
-    for (i, light) in scene.lights.iter().enumerate() {
-        writer.below(
-            None,
-            json!({
-                "name": light.name,
-                "translation": light.position.to_array(),
-                "rotation": Quat::from_rotation_arc(Vec3::NEG_Z, light.direction).to_array(),
-                "extensions": { "KHR_lights_punctual": { "light": i } },
-            }),
-        );
-    }
+    let lights = lights(scene, &mut writer);
+    let of_lights = LIGHTS.into_iter().zip(&lights);
+    let of_lights = of_lights.filter(|(_, list)| !list.is_empty());
+    let of_lights: Map<String, Value> = of_lights
+        .map(|(name, list)| (name.into(), json!({ "lights": list })))
+        .collect();
     for (i, (name, camera)) in scene.cameras.iter().enumerate() {
         writer.below(None, camera_node(name, i, camera));
     }
@@ -89,15 +84,12 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
         "accessors": writer.accessors,
         "bufferViews": writer.views,
         "extensionsUsed": extensions_used(scene),
-        "extensions": { "KHR_lights_punctual": { "lights": scene.lights.iter().map(light).collect::<Vec<_>>() } },
+        "extensions": of_lights,
     });
     root["animations"] = json!(writer.clips.iter().map(Clip::json).collect::<Vec<_>>());
     // glTF forbids empty arrays.
     if let Some(root) = root.as_object_mut() {
         root.retain(|_, value| value.as_array().is_none_or(|array| !array.is_empty()));
-    }
-    if scene.lights.is_empty() {
-        root["extensions"] = json!({});
     }
     save(root, writer.bytes, path, binary)
 }
@@ -249,7 +241,9 @@ fn extensions_used(scene: &Scene) -> Vec<&'static str> {
     let plain = Material::default();
     let mut used = vec!["KHR_materials_emissive_strength"];
     let some = |differs: &dyn Fn(&Material) -> bool| scene.materials.iter().any(differs);
-    used.extend((!scene.lights.is_empty()).then_some("KHR_lights_punctual"));
+    let has = |area: bool| scene.lights.iter().any(|l| (light(l).0 == 1) == area);
+    used.extend(has(false).then_some(LIGHTS[0]));
+    used.extend(has(true).then_some(LIGHTS[1]));
     used.extend(some(&|m| m.ior != plain.ior).then_some("KHR_materials_ior"));
     used.extend(some(&|m| has_specular(m)).then_some("KHR_materials_specular"));
     let colored = scene.meshes.iter().any(Mesh::has_colors);
@@ -324,21 +318,57 @@ fn unlit(material: &Material, mut value: Value) -> Value {
     value
 }
 
-fn light(light: &Light) -> Value {
+/// The extensions for lights without and with an extent.
+const LIGHTS: [&str; 2] = ["KHR_lights_punctual", "EXT_lights_area"];
+
+/// A light, and which of [`LIGHTS`] it is of.
+fn light(light: &Light) -> (usize, Value) {
     // glTF colours must not exceed 1; the rest becomes the intensity.
     let intensity = light.color.max_element().max(f32::MIN_POSITIVE);
-    let mut value = json!({
-        "name": light.name, "color": (light.color / intensity).to_array(), "intensity": intensity,
-        "type": match light.kind {
-            LightKind::Directional => "directional",
-            LightKind::Point => "point",
-            LightKind::Spot { .. } => "spot",
-        },
-    });
-    if let LightKind::Spot { inner, outer } = light.kind {
-        value["spot"] = json!({ "innerConeAngle": inner, "outerConeAngle": outer });
+    let color = (light.color / intensity).to_array();
+    let mut value = json!({ "name": light.name, "color": color, "intensity": intensity });
+    let (extension, kind) = match light.kind {
+        LightKind::Directional => (0, "directional"),
+        LightKind::Point => (0, "point"),
+        LightKind::Spot { inner, outer } => {
+            value["spot"] = json!({ "innerConeAngle": inner, "outerConeAngle": outer });
+            (0, "spot")
+        }
+        LightKind::Rectangle { width, height } => {
+            value["size"] = height.into();
+            value["rect"] = json!({ "aspect": width / height });
+            (1, "rect")
+        }
+        LightKind::Disc { radius } => {
+            value["size"] = (2.0 * radius).into();
+            (1, "disk")
+        }
+    };
+    value["type"] = kind.into();
+    (extension, value)
+}
+
+/// Lights by extension, and their nodes.
+fn lights(scene: &Scene, writer: &mut Writer) -> [Vec<Value>; 2] {
+    let mut lists = [Vec::new(), Vec::new()];
+    for one in &scene.lights {
+        let (extension, value) = light(one);
+        let turn = match one.kind {
+            LightKind::Rectangle { .. } => {
+                let (side, top) = one.half_extents();
+                let axes = [side.normalize(), top.normalize(), -one.direction];
+                Quat::from_mat3(&Mat3::from_cols(axes[0], axes[1], axes[2]))
+            }
+            _ => Quat::from_rotation_arc(Vec3::NEG_Z, one.direction),
+        };
+        let node = json!({
+            "name": one.name, "translation": one.position.to_array(), "rotation": turn.to_array(),
+            "extensions": { LIGHTS[extension]: { "light": lists[extension].len() } },
+        });
+        writer.below(None, node);
+        lists[extension].push(value);
     }
-    value
+    lists
 }
 
 fn camera_node(name: &str, index: usize, camera: &Camera) -> Value {

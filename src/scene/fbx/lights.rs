@@ -94,7 +94,7 @@ pub(super) fn read(
         color: strength,
         position: world.translation.as_vec3(),
         direction: direction.as_vec3(),
-        shadow: true,
+        ..Light::default()
     })
 }
 

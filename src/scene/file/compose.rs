@@ -106,10 +106,7 @@ pub(super) fn add_placed(scene: &mut Scene, model: &Scene, entry: &ModelEntry) {
             }
         }));
     for mut light in model.lights.iter().filter(|_| entry.lights).cloned() {
-        light.position = frame.transform_point3(light.position);
-        light.direction = frame
-            .transform_vector3(light.direction)
-            .normalize_or(light.direction);
+        light.transform(&frame);
         light.color *= entry.lights_scale.unwrap_or(1.0);
         scene.lights.push(light);
     }

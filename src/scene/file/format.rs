@@ -11,7 +11,7 @@ use super::parts::{InstanceEntry, Part};
 use super::placement::{Moves, Placed};
 use crate::scene::environment::{ClearSky, check as check_environment};
 use crate::scene::shapes::patterns::Picture;
-use crate::scene::{Camera, Light, LightKind, MAX_COORDINATE, Material, Track, builtin};
+use crate::scene::{Camera, Light, MAX_COORDINATE, Material, Track, builtin};
 
 /// A whole scene file.
 #[derive(Debug, Default, Deserialize)]
@@ -19,7 +19,7 @@ use crate::scene::{Camera, Light, LightKind, MAX_COORDINATE, Material, Track, bu
 pub(super) struct SceneFile {
     pub name: Option<String>,
     pub models: Vec<ModelEntry>,
-    pub lights: Vec<LightEntry>,
+    pub lights: Vec<Light>,
     /// Radiance of the sky; defaults to that of the first model.
     pub sky: Option<Sky>,
     /// Environment map, multiplied by the radiance.
@@ -199,115 +199,6 @@ impl TryFrom<ModelFields> for ModelEntry {
             lights_scale: fields.lights_scale,
             cameras: fields.cameras,
         })
-    }
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(try_from = "LightFields")]
-pub(super) struct LightEntry(Light);
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-enum LightFields {
-    Directional {
-        #[serde(default)]
-        name: String,
-        color: Vec3,
-        direction: Vec3,
-        shadow: bool,
-    },
-    Point {
-        #[serde(default)]
-        name: String,
-        color: Vec3,
-        position: Vec3,
-        shadow: bool,
-    },
-    Spot {
-        #[serde(default)]
-        name: String,
-        color: Vec3,
-        position: Vec3,
-        direction: Vec3,
-        inner_deg: f32,
-        outer_deg: f32,
-        shadow: bool,
-    },
-}
-
-impl TryFrom<LightFields> for LightEntry {
-    type Error = String;
-
-    fn try_from(fields: LightFields) -> Result<Self, String> {
-        let (name, kind, color, position, direction, shadow) = match fields {
-            LightFields::Directional {
-                name,
-                color,
-                direction,
-                shadow,
-            } => (
-                name,
-                LightKind::Directional,
-                color,
-                Vec3::ZERO,
-                direction,
-                shadow,
-            ),
-            LightFields::Point {
-                name,
-                color,
-                position,
-                shadow,
-            } => (name, LightKind::Point, color, position, Vec3::NEG_Y, shadow),
-            LightFields::Spot {
-                name,
-                color,
-                position,
-                direction,
-                inner_deg,
-                outer_deg,
-                shadow,
-            } => {
-                if !(inner_deg >= 0.0 && inner_deg < outer_deg && outer_deg <= 89.0) {
-                    return Err(
-                        "a spot's half-angles must obey 0 <= inner_deg < outer_deg <= 89".into(),
-                    );
-                }
-                let kind = LightKind::Spot {
-                    inner: inner_deg.to_radians(),
-                    outer: outer_deg.to_radians(),
-                };
-                (name, kind, color, position, direction, shadow)
-            }
-        };
-        let placed = position.abs().max_element() <= MAX_COORDINATE;
-        if !color.is_finite() || color.min_element() < 0.0 || !placed {
-            return Err(format!(
-                "a light's color must be finite and not negative, its position within {MAX_COORDINATE:e} m of the origin"
-            ));
-        }
-        let direction = direction
-            .try_normalize()
-            .ok_or("a light's direction must be finite and not zero")?;
-        Ok(LightEntry(Light {
-            name,
-            kind,
-            color,
-            position,
-            direction,
-            shadow,
-        }))
-    }
-}
-
-impl LightEntry {
-    /// The light with a default name.
-    pub fn to_light(&self, index: usize) -> Light {
-        let mut light = self.0.clone();
-        if light.name.is_empty() {
-            light.name = format!("light {index}");
-        }
-        light
     }
 }
 

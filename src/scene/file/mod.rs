@@ -95,7 +95,11 @@ fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene, SceneError
         }
     }
     for light in &file.lights {
-        scene.lights.push(light.to_light(scene.lights.len()));
+        let mut light = light.clone();
+        if light.name.is_empty() {
+            light.name = format!("light {}", scene.lights.len());
+        }
+        scene.lights.push(light);
     }
     let (low, high) = scene.bounds();
     let near = defaults::near_plane((high - low).length());

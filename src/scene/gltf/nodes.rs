@@ -138,6 +138,7 @@ pub(super) fn place<'a>(
         }
         add_light_and_camera(
             &mut placed.scene,
+            document,
             &node,
             (mover, local),
             &name,
@@ -161,6 +162,7 @@ pub(super) fn place<'a>(
 /// Adds the light and the camera of a node.
 fn add_light_and_camera(
     scene: &mut Scene,
+    document: &Document,
     node: &Node,
     (mover, local): (Option<u32>, Mat4),
     name: &str,
@@ -168,7 +170,7 @@ fn add_light_and_camera(
     warnings: &mut Warnings,
 ) {
     // Lights and cameras keep their transform at time 0.
-    let moves = mover.is_some() && (node.light().is_some() || node.camera().is_some());
+    let moves = mover.is_some() && (lights::has_one(node) || node.camera().is_some());
     if moves {
         warnings.add(
             "lights and cameras of moving nodes stay where they are at 0 s",
@@ -180,11 +182,10 @@ fn add_light_and_camera(
     } else {
         local
     };
-    if let Some(light) = node.light().filter(|_| visible) {
-        match lights::read(&light, name, start, warnings) {
-            Ok(light) => scene.lights.push(light),
-            Err(why) => warnings.add(format!("lights that have {why} are left out"), name),
-        }
+    match lights::of_node(node, document, name, start, warnings).filter(|_| visible) {
+        Some(Ok(light)) => scene.lights.push(light),
+        Some(Err(why)) => warnings.add(format!("lights that have {why} are left out"), name),
+        None => {}
     }
     if let Some(camera) = node.camera() {
         match read_camera(&camera.projection(), start) {

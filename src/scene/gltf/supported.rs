@@ -5,7 +5,8 @@ use serde_json::Value;
 use crate::scene::warnings::Warnings;
 
 /// Extensions that a file may require.
-const READ: [&str; 18] = [
+const READ: [&str; 19] = [
+    "EXT_lights_area",
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",

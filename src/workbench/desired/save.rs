@@ -2,11 +2,11 @@
 
 use super::request::{LightState, RenderRequest, SideRequest};
 use crate::diagnostics::{At, Loc};
-use crate::experiment::{CameraChoice, EnvironmentChange, Experiment, LightChange};
+use crate::experiment::{CameraChoice, EnvironmentChange, Experiment};
 use crate::lab::{Lab, LabError};
 use crate::results::capture::{self, Resource, What};
 use crate::results::timers::Rows;
-use crate::scene::{Light, LightKind, Scene};
+use crate::scene::Scene;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -54,7 +54,7 @@ pub fn experiment(
                         value: own.name.clone(),
                         at: At::default(),
                     },
-                    change(light, own),
+                    light.fields().changed(&own.fields()),
                 )
             })
             .collect();
@@ -85,23 +85,6 @@ pub fn still(
         still.camera = CameraChoice::Placed(path.at(time));
     }
     still
-}
-
-fn change(light: &Light, own: &Light) -> LightChange {
-    let angles = |kind: LightKind| match kind {
-        LightKind::Spot { inner, outer } => {
-            Some((f64::from(inner).to_degrees(), f64::from(outer).to_degrees()))
-        }
-        _ => None,
-    };
-    let differing = angles(light.kind).filter(|_| light.kind != own.kind);
-    LightChange {
-        color: (light.color != own.color).then(|| light.color.into()),
-        direction: (light.direction != own.direction).then(|| light.direction.into()),
-        position: (light.position != own.position).then(|| light.position.into()),
-        inner: differing.map(|a| a.0),
-        outer: differing.map(|a| a.1),
-    }
 }
 
 /// Lights and sky of a scene as an experiment has them, if they are not the scene's own.

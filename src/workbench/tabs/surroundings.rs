@@ -2,7 +2,8 @@
 
 use super::Tab;
 use crate::lab::Viewpoint;
-use crate::scene::{Light, LightKind};
+use crate::scene::Light;
+use crate::scene::light::Quantity;
 use crate::workbench::Workbench;
 use crate::workbench::desired::request::LightState;
 use crate::workbench::messages::AMBER;
@@ -258,65 +259,67 @@ fn intensity(ui: &mut Ui, sky: &mut Vec3) {
     }
 }
 
+/// Controls of all fields of a light.
 fn one(ui: &mut Ui, light: &mut Light) {
+    let fields = light.fields();
+    for (field, _) in fields.vectors() {
+        let meaning = light.kind.row().color;
+        let Some(v) = light.vector(field.name) else {
+            continue;
+        };
+        match field.quantity {
+            Quantity::Color => color(ui, v, meaning),
+            Quantity::Direction => direction(ui, v, field.name),
+            _ => metres(ui, "position, m", v),
+        }
+    }
+    for &(field, mut x) in fields.numbers() {
+        let before = x;
+        let slider = egui::Slider::new(&mut x, field.range())
+            .suffix(format!(" {}", field.quantity.unit()))
+            .logarithmic(field.quantity == Quantity::Length)
+            .text(field.name);
+        ui.add(slider);
+        if x != before {
+            light.set_number(field, x);
+            light.keep_in_order();
+        }
+    }
+}
+
+fn color(ui: &mut Ui, v: &mut Vec3, meaning: &str) {
     ui.horizontal(|ui| {
-        for (x, c) in [&mut light.color.x, &mut light.color.y, &mut light.color.z]
-            .into_iter()
-            .zip(RGB)
-        {
-            spin(
-                ui,
-                DragValue::new(x).range(0.0..=1e7).speed(0.02),
-                &format!("light {c}"),
-            );
+        for (x, c) in v.as_mut().iter_mut().zip(RGB) {
+            let spinner = DragValue::new(x).range(0.0..=1e7).speed(0.02);
+            spin(ui, spinner, &format!("light {c}"));
         }
-        ui.label(match light.kind {
-            LightKind::Directional => "irradiance",
-            _ => "intensity",
-        })
-        .on_hover_text("Linear RGB; W/m² on a facing surface for a sun, W/sr for lamps");
+        ui.label(meaning).on_hover_text(
+            "Linear RGB; W/m² on a facing surface for a sun, W/sr for points and spots, W/(m² sr) for areas",
+        );
     });
-    if !matches!(light.kind, LightKind::Directional) {
-        metres(ui, "position, m", &mut light.position);
-    }
-    if !matches!(light.kind, LightKind::Point) {
-        // As angles: easier to set than three numbers of a unit vector.
-        let d = light.direction;
-        let (mut azimuth, mut elevation) = (
-            d.z.atan2(d.x).to_degrees(),
-            (-d.y).clamp(-1.0, 1.0).asin().to_degrees(),
-        );
-        let before = (azimuth, elevation);
-        ui.add(
-            egui::Slider::new(&mut azimuth, -180.0..=180.0)
-                .suffix(" deg")
-                .text("azimuth"),
-        );
-        ui.add(
-            egui::Slider::new(&mut elevation, -90.0..=90.0)
-                .suffix(" deg")
-                .text("elevation"),
-        );
-        if (azimuth, elevation) != before {
-            let (a, e) = (azimuth.to_radians(), elevation.to_radians());
-            light.direction = Vec3::new(e.cos() * a.cos(), -e.sin(), e.cos() * a.sin());
-        }
-    }
-    if let LightKind::Spot { inner, outer } = &mut light.kind {
-        let (mut i, mut o) = (inner.to_degrees(), outer.to_degrees());
-        let before = (i, o);
-        ui.add(
-            egui::Slider::new(&mut i, 0.0..=89.0)
-                .suffix(" deg")
-                .text("inner"),
-        );
-        ui.add(
-            egui::Slider::new(&mut o, 1.0..=89.0)
-                .suffix(" deg")
-                .text("outer"),
-        );
-        if (i, o) != before {
-            (*inner, *outer) = (i.min(o).to_radians(), o.to_radians());
-        }
+}
+
+/// As angles: easier to set than three numbers of a unit vector.
+fn direction(ui: &mut Ui, d: &mut Vec3, name: &str) {
+    let of = if name == "direction" {
+        String::new()
+    } else {
+        format!("{name}: ")
+    };
+    let (mut azimuth, mut elevation) = (
+        d.z.atan2(d.x).to_degrees(),
+        (-d.y).clamp(-1.0, 1.0).asin().to_degrees(),
+    );
+    let before = (azimuth, elevation);
+    let slider = |x, range, name| {
+        egui::Slider::new(x, range)
+            .suffix(" deg")
+            .text(format!("{of}{name}"))
+    };
+    ui.add(slider(&mut azimuth, -180.0..=180.0, "azimuth"));
+    ui.add(slider(&mut elevation, -90.0..=90.0, "elevation"));
+    if (azimuth, elevation) != before {
+        let (a, e) = (azimuth.to_radians(), elevation.to_radians());
+        *d = Vec3::new(e.cos() * a.cos(), -e.sin(), e.cos() * a.sin());
     }
 }

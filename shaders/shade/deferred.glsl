@@ -1,0 +1,73 @@
+// Final deferred shading, one thread per pixel and one image per light component (thesis, Algorithm 3).
+// Indirect diffuse light is albedo times the mean radiance over the hemisphere, including the sky in open
+// directions.
+#include "params.glsl"
+#include "gbuffer/read.glsl"
+#include "shadow/visibility.glsl"
+#include "lights/direct.glsl"
+#include "lights/sky.glsl"
+#include "shade/filter.glsl"
+#include "shade/demodulate.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+uniform sampler2D gatheredDiffuse;
+uniform sampler2D gatheredSpecular;
+uniform sampler2D smoothedDiffuse;
+uniform sampler2D smoothedSpecular;
+
+uniform writeonly image2D radiance; // total, including emission
+uniform writeonly image2D direct;
+uniform writeonly image2D diffuseIndirect;
+uniform writeonly image2D specularIndirect;
+uniform writeonly image2D occlusion; // 1: open
+uniform writeonly image2D surfaceNormal; // * 0.5 + 0.5
+
+Filtered unfiltered(ivec2 pixel) {
+    return Filtered(texelFetch(gatheredDiffuse, pixel, 0), texelFetch(gatheredSpecular, pixel, 0).rgb);
+}
+
+// Mean of 2x2 smoothed pixels: with smooth.comp, of 8x8 pixels that see the same surface.
+Filtered filtered(ivec2 pixel, GBufferSurface seen) {
+    vec4 diffuse = vec4(0.0);
+    vec3 specular = vec3(0.0);
+    float weights = 0.0, specular_weights = 0.0, lobe = reflectionBlur(seen);
+    EdgeStop stop = edgeStopOf(seen);
+    for (int i = 0; i < 4; i++) {
+        ivec2 at = pixel + ivec2(i & 1, i >> 1);
+        bool self = at == pixel;
+        float weight = self ? 1.0 : edgeStoppingWeight(at, stop);
+        diffuse += weight * texelFetch(smoothedDiffuse, at, 0);
+        weights += weight;
+        weight *= self ? 1.0 : lobe;
+        specular += weight * texelFetch(smoothedSpecular, at, 0).rgb;
+        specular_weights += weight;
+    }
+    vec3 reflectance = max(lobeReflectance(seen.surface, seen.to_viewer), MIN_REFLECTANCE);
+    specular *= reflectance / max(specular_weights, 1e-6);
+    return Filtered(diffuse / max(weights, 1e-6), specular);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
+    GBufferSurface seen = gbufferAt(pixel);
+    vec3 total = vec3(0.0), normal = vec3(-1.0), lit = vec3(0.0), diffuse = vec3(0.0);
+    Filtered light = Filtered(vec4(0.0, 0.0, 0.0, 1.0), vec3(0.0));
+    if (seen.any) {
+        light = params.pattern == 1 ? unfiltered(pixel) : filtered(pixel, seen);
+        lit = directLight(seen.surface, seen.position, seen.face, seen.to_viewer);
+        diffuse = seen.surface.albedo * light.hemisphere.rgb;
+        total = lit + diffuse + light.specular + seen.emission;
+        normal = seen.surface.normal;
+    } else {
+        total = skyBehind(viewRay(vec2(pixel) + 0.5));
+    }
+    float covered = seen.any ? 1.0 : 0.0;
+    imageStore(radiance, pixel, vec4(total, 1.0));
+    imageStore(direct, pixel, vec4(lit, covered));
+    imageStore(diffuseIndirect, pixel, vec4(diffuse, covered));
+    imageStore(specularIndirect, pixel, vec4(light.specular, covered));
+    imageStore(occlusion, pixel, vec4(vec3(light.hemisphere.a), 1.0));
+    imageStore(surfaceNormal, pixel, vec4(normal * 0.5 + 0.5, covered));
+}
