@@ -227,15 +227,7 @@ fn equal_settings_of_a_and_b_differ_in_no_bit() {
             }
         }))
     {
-        let params = case
-            .params
-            .iter()
-            .map(|(name, value)| (name.value.clone(), value.clone()))
-            .collect();
-        let side = SideRequest {
-            graph: case.graph.clone(),
-            params,
-        };
+        let side = SideRequest::of(&case);
         let mut request = RenderRequest {
             sides: [Some(side.clone()), None],
             scene: "cornell".into(),
@@ -316,19 +308,8 @@ fn a_point_of_a_sweep_lands_on_its_dot_in_the_chart() {
         cache: Some(common::cache()),
     };
     let engine = Engine::start(home, options, Arc::new(|| {}));
-    let params = case
-        .params
-        .iter()
-        .map(|(name, value)| (name.value.clone(), value.clone()))
-        .collect();
     let request = RenderRequest {
-        sides: [
-            Some(SideRequest {
-                graph: case.graph.clone(),
-                params,
-            }),
-            None,
-        ],
+        sides: [Some(SideRequest::of(&case)), None],
         scene: "cornell".into(),
         size: case.size,
         bytes: true,

@@ -4,6 +4,7 @@
 mod common;
 
 use common::root;
+use conelab::graph::param::Value;
 use conelab::lab::Workspace;
 use conelab::vulkan::{Faults, GpuOptions};
 use conelab::workbench::desired::request::{RenderRequest, SideRequest};
@@ -41,7 +42,7 @@ impl Driver {
         let engine = Engine::start(home.clone(), options.clone(), Arc::new(|| {}));
         let side = SideRequest {
             graph: "preview.ron".into(),
-            params: Vec::new(),
+            ..SideRequest::default()
         };
         let request = RenderRequest {
             sides: [Some(side), None],
@@ -219,13 +220,14 @@ fn a_shader_that_hangs_is_left_behind() {
     driver.engine = Engine::start(driver.home.clone(), options, Arc::new(|| {}));
     let side = |endless: bool| {
         let params = if endless {
-            vec![("endless".into(), "true".into())]
+            vec![("endless".into(), Value::Bool(true))]
         } else {
             Vec::new()
         };
         Some(SideRequest {
             graph: "endless.ron".into(),
             params,
+            ..SideRequest::default()
         })
     };
     driver.request.sides[0] = side(false);

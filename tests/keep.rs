@@ -11,6 +11,7 @@ use conelab::graph::param::{Kind, Params};
 use conelab::lab::load;
 use conelab::results::capture;
 use conelab::scene::LightFields;
+use conelab::workbench::desired::request::{RenderRequest, SideRequest};
 use glam::{Mat4, Vec3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -148,6 +149,44 @@ fn set(experiment: &mut Experiment, name: &str, value: &str) {
 }
 
 // Experiments.
+
+#[test]
+fn a_side_of_the_window_keeps_what_an_experiment_sets() {
+    let project = Project::new();
+    let (defaults, mut experiment) = (project.defaults(), project.experiment());
+    for (name, value) in [
+        ("on", "false"),
+        ("count", "7"),
+        ("level", "1"),
+        ("pair", "(2, 3)"),
+        ("four", "(1, 2, 3, 4.5)"),
+        ("tint", "(1, 0.5, 0)"),
+        ("mode", "odd"),
+        ("off", "[\"fill\"]"),
+    ] {
+        set(&mut experiment, name, value);
+    }
+    let mut params = defaults.clone();
+    assert!(SideRequest::of(&experiment).apply(&mut params));
+    let wanted = experiment.params_over(&defaults).unwrap();
+    assert_eq!((params.values, params.off), (wanted.values, wanted.off));
+    // The graph may be read again later, with a place for these.
+    for (name, value) in [("later", "[1, 2]"), ("level", "bright"), ("off", "fill")] {
+        set(&mut experiment, name, value);
+    }
+    let side = SideRequest::of(&experiment);
+    assert!(!side.apply(&mut defaults.clone()));
+    let again = RenderRequest::default().experiment(&side);
+    assert_eq!(SideRequest::of(&again), side);
+    let why = again.params_over(&defaults).unwrap_err().to_string();
+    for part in [
+        "no parameter 'later'",
+        "'level': expected a number",
+        "'off': expected a list of passes",
+    ] {
+        assert!(why.contains(part), "{why}");
+    }
+}
 
 /// Any values of the graph's parameters, each at its default or not.
 fn values(params: &Params) -> impl Strategy<Value = Vec<Option<String>>> + use<> {

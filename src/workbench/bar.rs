@@ -5,10 +5,11 @@ use crate::experiment::Experiment;
 use crate::graph::file::CompareDecl;
 use crate::results::timers::Rows;
 use crate::workbench::desired::edit;
+use crate::workbench::desired::request::SideRequest;
 use crate::workbench::engine::Order;
 use crate::workbench::messages::AMBER;
 use crate::workbench::panel::control::CHANGED;
-use crate::workbench::{Workbench, ron_files, short, side_of};
+use crate::workbench::{Workbench, ron_files, short};
 use egui::Ui;
 
 impl Workbench {
@@ -119,9 +120,10 @@ impl Workbench {
         let Some((path, side)) = chosen else { return };
         match Experiment::read(&path) {
             Ok(experiment) if side == 0 => self.open(&experiment),
-            Ok(experiment) => {
-                self.compare_sides([self.desired.sides[0].clone(), Some(side_of(&experiment))])
-            }
+            Ok(experiment) => self.compare_sides([
+                self.desired.sides[0].clone(),
+                Some(SideRequest::of(&experiment)),
+            ]),
             Err(errors) => self.sides[side].errors = errors,
         }
     }

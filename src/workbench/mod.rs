@@ -30,13 +30,13 @@ use crate::lab::{LabError, Workspace};
 use crate::scene::Scene;
 use crate::vulkan::{Buffer, DeviceId, GpuOptions, PixelSource, Pixels};
 use background::Wake;
-use desired::request::RenderRequest;
+use desired::request::{RenderRequest, SideRequest};
 use desired::{edit, history, request, sides};
 use egui::{TextureId, Ui, Vec2};
 use engine::Engine;
 use engine::report::{DeviceReport, GraphInfo, PictureReport};
 use events::Events;
-use opening::{picture_of, side_of};
+use opening::picture_of;
 use panel::effects;
 use picture::compare::Mode;
 use picture::{difference, view};
@@ -218,7 +218,7 @@ impl Workbench {
         let engine = Engine::start(home.clone(), gpu.clone(), wake.clone());
         let mut watch = watch::Watch::new(&root, wake.clone());
         let desired = RenderRequest {
-            sides: [Some(side_of(&experiment)), None],
+            sides: [Some(SideRequest::of(&experiment)), None],
             scene: options.scene.unwrap_or_else(|| experiment.scene.clone()),
             environment: picture_of(&experiment),
             size: options.size.unwrap_or((0, 0)),

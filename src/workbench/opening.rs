@@ -47,7 +47,8 @@ impl Workbench {
                     .as_ref()
                     .and_then(|i| i.graph.pointer.as_deref());
                 let shown = self.desired.sides[0].clone().unwrap_or_default();
-                if sorted(side_of(&experiment)) != sorted(save::without_pointer(&shown, pointer))
+                if sorted(SideRequest::of(&experiment))
+                    != sorted(save::without_pointer(&shown, pointer))
                     || experiment.scene != self.desired.scene
                     || picture_of(&experiment) != self.desired.environment
                 {
@@ -64,7 +65,7 @@ impl Workbench {
         let before = self.missing_scene().is_none().then(|| self.state());
         self.undo.history.opens();
         self.experiment.name.clone_from(&experiment.name);
-        self.desired.sides[0] = Some(side_of(experiment));
+        self.desired.sides[0] = Some(SideRequest::of(experiment));
         if self.desired.scene == experiment.scene
             && self.desired.environment == picture_of(experiment)
         {
@@ -155,7 +156,8 @@ impl Workbench {
 
 /// A side with its parameters in order, so that saved files do not depend on the order of edits.
 fn sorted(mut side: SideRequest) -> SideRequest {
-    side.params.sort();
+    side.params.sort_by(|a, b| a.0.cmp(&b.0));
+    side.off.sort();
     side
 }
 
@@ -166,16 +168,4 @@ pub(super) fn picture_of(experiment: &Experiment) -> String {
         .as_ref()
         .and_then(|e| e.value.file.clone())
         .unwrap_or_default()
-}
-
-/// A side that shows an experiment.
-pub(super) fn side_of(experiment: &Experiment) -> SideRequest {
-    SideRequest {
-        graph: experiment.graph.clone(),
-        params: experiment
-            .params
-            .iter()
-            .map(|(name, value)| (name.value.clone(), value.clone()))
-            .collect(),
-    }
 }

@@ -127,7 +127,7 @@ impl Workbench {
                 );
                 self.sides[side].errors = diagnostics;
             }
-            Report::Set { side, .. } => {
+            Report::Set { side } => {
                 self.mended(side);
             }
             Report::Restarted => self.tabs.times.restarted(),

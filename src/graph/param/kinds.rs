@@ -67,6 +67,20 @@ impl Value {
         }
     }
 
+    /// Reads RON without the parameter: text of no other kind is the name of an option.
+    pub fn read(text: &str) -> Value {
+        let (text, ron) = (text.trim(), options());
+        let vector = |v: &[f64]| Value::Vector(v.to_vec());
+        (ron.from_str(text).map(Value::Bool))
+            .or_else(|_| ron.from_str(text).map(Value::Int))
+            .or_else(|_| ron.from_str(text).map(Value::Float))
+            .or_else(|_| ron.from_str::<[f64; 2]>(text).map(|v| vector(&v)))
+            .or_else(|_| ron.from_str::<[f64; 3]>(text).map(|v| vector(&v)))
+            .or_else(|_| ron.from_str::<[f64; 4]>(text).map(|v| vector(&v)))
+            .or_else(|_| ron.from_str(text).map(Value::Choice))
+            .unwrap_or_else(|_| Value::Choice(text.into()))
+    }
+
     /// As RON, as experiments write it.
     pub fn to_ron(&self) -> String {
         match self {
@@ -260,27 +274,32 @@ impl Param {
     /// # Errors
     /// The text for the user.
     pub fn parse(&self, text: &str) -> Result<Value, String> {
-        let (text, ron) = (text.trim(), options());
-        let value = match &self.kind {
-            Kind::Bool => ron.from_str(text).map(Value::Bool),
-            Kind::Int => ron.from_str(text).map(Value::Int),
-            Kind::Float => ron.from_str(text).map(Value::Float),
-            Kind::Vector(2) => ron
-                .from_str::<[f64; 2]>(text)
-                .map(|v| Value::Vector(v.to_vec())),
-            Kind::Vector(4) => ron
-                .from_str::<[f64; 4]>(text)
-                .map(|v| Value::Vector(v.to_vec())),
-            Kind::Vector(_) | Kind::Colour => ron
-                .from_str::<[f64; 3]>(text)
-                .map(|v| Value::Vector(v.to_vec())),
-            Kind::Choice(_) => Ok(Value::Choice(
-                ron.from_str::<String>(text)
-                    .unwrap_or_else(|_| text.to_string()),
-            )),
-        };
-        let value = value
-            .map_err(|_| format!("'{}': expected {}, got {text}", self.name, self.expected()))?;
+        let text = text.trim();
+        let wrong = || format!("'{}': expected {}, got {text}", self.name, self.expected());
+        let value = self.of_kind(Value::read(text)).ok_or_else(wrong)?;
+        self.accept(value)
+    }
+
+    /// The value as one of this parameter's kind, if it is in range and not fixed.
+    pub fn fit(&self, value: &Value) -> Option<Value> {
+        self.accept(self.of_kind(value.clone())?).ok()
+    }
+
+    fn of_kind(&self, value: Value) -> Option<Value> {
+        match (&self.kind, value) {
+            (Kind::Float, Value::Int(v)) => Some(Value::Float(v as f64)),
+            (Kind::Choice(_), value) => Some(Value::Choice(value.to_string())),
+            (Kind::Vector(_) | Kind::Colour, Value::Vector(v)) => {
+                (v.len() == self.kind.components()).then_some(Value::Vector(v))
+            }
+            (Kind::Bool, value @ Value::Bool(_))
+            | (Kind::Int, value @ Value::Int(_))
+            | (Kind::Float, value @ Value::Float(_)) => Some(value),
+            _ => None,
+        }
+    }
+
+    fn accept(&self, value: Value) -> Result<Value, String> {
         self.check(&value)?;
         if self.fixed && value != self.default {
             return Err(format!(

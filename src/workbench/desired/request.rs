@@ -1,8 +1,9 @@
 //! The desired state of the window. The engine always works towards the latest request.
 
 use crate::camera_path::CameraPath;
-use crate::diagnostics::{At, Loc, Sources};
+use crate::diagnostics::{At, Loc, Sources, options};
 use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
+use crate::graph::param::{OFF, Params, Value};
 use crate::graph::run::Execution;
 use crate::lab::Session;
 use crate::scene::{Camera, Light, Scene};
@@ -14,8 +15,50 @@ use glam::Vec3;
 pub struct SideRequest {
     /// Graph file in the passes folder.
     pub graph: String,
-    /// (name, value as RON).
-    pub params: Vec<(String, String)>,
+    /// (name, value).
+    pub params: Vec<(String, Value)>,
+    /// Passes that are left out.
+    pub off: Vec<String>,
+}
+
+impl SideRequest {
+    /// The side of an experiment.
+    pub fn of(experiment: &Experiment) -> SideRequest {
+        let mut side = SideRequest {
+            graph: experiment.graph.clone(),
+            ..SideRequest::default()
+        };
+        for (name, text) in &experiment.params {
+            match options().from_str(text) {
+                Ok(off) if name.value == OFF => side.off = off,
+                // The build reports a list of passes that cannot be read.
+                _ => side.params.push((name.value.clone(), Value::read(text))),
+            }
+        }
+        side
+    }
+
+    /// Sets the values in a graph's parameters. False if one of them has no place there.
+    pub fn apply(&self, params: &mut Params) -> bool {
+        let mut fits = self.off.iter().all(|pass| params.passes.contains(pass));
+        for (name, value) in &self.params {
+            let place = params.index(name);
+            match place.and_then(|i| Some((i, params.list[i].fit(value)?))) {
+                Some((i, value)) => params.values[i] = value,
+                None => fits = false,
+            }
+        }
+        let off = params.passes.iter().filter(|pass| self.off.contains(pass));
+        params.off = off.cloned().collect();
+        fits
+    }
+
+    /// The values as an experiment has them.
+    fn texts(&self) -> Vec<(&str, String)> {
+        let off = (!self.off.is_empty()).then(|| (OFF, format!("{:?}", self.off)));
+        let values = self.params.iter().map(|(n, v)| (n.as_str(), v.to_ron()));
+        values.chain(off).collect()
+    }
 }
 
 /// The course of the scene's time.
@@ -124,24 +167,15 @@ impl RenderRequest {
     /// The experiment of a side, as a session is made from it.
     pub fn experiment(&self, side: &SideRequest) -> Experiment {
         let mut sources = Sources::default();
-        let text = side
-            .params
-            .iter()
-            .map(|(n, v)| format!("{n}: {v}"))
-            .collect::<Vec<_>>()
-            .join("\n");
-        let file = sources.add("the panel".as_ref(), text);
+        let texts = side.texts();
+        let lines: Vec<String> = texts.iter().map(|(n, v)| format!("{n}: {v}")).collect();
+        let file = sources.add("the panel".as_ref(), lines.join("\n"));
         let mut offset = 0;
         let mut params = Vec::new();
-        for (name, value) in &side.params {
-            params.push((
-                Loc {
-                    value: name.clone(),
-                    at: At { file, offset },
-                },
-                value.clone(),
-            ));
-            offset += u32::try_from(name.len() + value.len() + 3).unwrap_or(0);
+        for ((name, text), line) in texts.into_iter().zip(lines) {
+            let (value, at) = (name.to_string(), At { file, offset });
+            params.push((Loc { value, at }, text));
+            offset += u32::try_from(line.len() + 1).unwrap_or(0);
         }
         Experiment {
             name: "workbench".into(),

@@ -2,7 +2,7 @@
 
 use super::edit;
 use super::request::SideRequest;
-use crate::graph::param::OFF;
+use crate::graph::param::Value;
 use crate::workbench::{Workbench, short};
 
 /// A before a comparison, and as the comparison changed it.
@@ -19,8 +19,12 @@ impl Workbench {
             ..side.clone()
         };
         if let Ok(graph) = self.setup.home.read(graph) {
-            side.params
-                .retain(|(name, value)| graph.params.clone().set(name, value).is_ok());
+            let fits = |(name, value): &(String, Value)| {
+                let param = graph.params.param(name);
+                param.is_some_and(|p| p.fit(value).is_some())
+            };
+            side.params.retain(fits);
+            side.off.retain(|pass| graph.params.passes.contains(pass));
         }
         side
     }
@@ -61,11 +65,7 @@ impl Workbench {
             return Default::default();
         };
         let mut words = [Vec::new(), Vec::new()];
-        let off = [a, b].map(|side| edit::off(side, &info.params));
-        for (words, (own, other)) in words
-            .iter_mut()
-            .zip([(&off[0], &off[1]), (&off[1], &off[0])])
-        {
+        for (words, (own, other)) in words.iter_mut().zip([(&a.off, &b.off), (&b.off, &a.off)]) {
             let without: Vec<&str> = own
                 .iter()
                 .filter(|o| !other.contains(o))
@@ -79,7 +79,7 @@ impl Workbench {
             words.extend((!without.is_empty()).then(|| format!("without {}", without.join(", "))));
             words.extend((!with.is_empty()).then(|| format!("with {}", with.join(", "))));
         }
-        let mut seen: Vec<&str> = vec![OFF];
+        let mut seen: Vec<&str> = Vec::new();
         let mut more = false;
         for (name, _) in a.params.iter().chain(&b.params) {
             let Some(param) = info

@@ -5,6 +5,7 @@ use super::guard::guarded;
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
 use crate::scene::Scene;
+use crate::workbench::desired::request::SideRequest;
 use crossbeam_channel::{Receiver, Sender};
 use std::sync::Arc;
 use std::time::Instant;
@@ -12,10 +13,8 @@ use std::time::Instant;
 /// The inputs of a session; equal keys give the same session.
 #[derive(Clone, PartialEq)]
 pub struct Key {
-    /// Graph file.
-    pub graph: String,
-    /// Parameters that differ from the defaults.
-    pub params: Vec<(String, String)>,
+    /// Graph and parameters.
+    pub side: SideRequest,
     /// Picture size.
     pub size: (u32, u32),
     /// Revision of the files.

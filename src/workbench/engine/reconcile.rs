@@ -24,8 +24,7 @@ impl Run<'_> {
             wanted.push(table.value.list.value.buffer.clone());
         }
         Key {
-            graph: side.graph.clone(),
-            params: side.params.clone(),
+            side: side.clone(),
             size: self.desired.size,
             revision: self.desired.revision,
             scene: self.scene_number,
@@ -57,29 +56,31 @@ impl Run<'_> {
             side.answered = self.number;
             return Ok(());
         }
-        let same_files = |k: &Key| k.graph == key.graph && k.revision == key.revision;
+        let same_files = |k: &Key| k.side.graph == key.side.graph && k.revision == key.revision;
         if let (Some(session), Some(old), Some(loaded)) =
             (&mut side.session, &side.key, &side.loaded)
             && !side.preview
             && same_files(old)
             && (old.size, old.scene, &old.wanted) == (key.size, key.scene, &key.wanted)
         {
-            let set = params_of(&loaded.graph, &experiment)
-                .and_then(|params| Ok(session.set_params(&self.lab, &params)?.then_some(params)));
+            let mut params = loaded.graph.params.clone();
+            let params = match desired.apply(&mut params) {
+                true => Ok(params),
+                // The experiment has the places of wrong values.
+                false => params_of(&loaded.graph, &experiment),
+            };
+            let set = params.and_then(|params| session.set_params(&self.lab, &params));
             match set {
-                Ok(Some(params)) => {
+                Ok(true) => {
                     side.key = Some(key);
                     side.failed = None;
                     side.answered = self.number;
-                    self.out.send(Report::Set {
-                        side: number,
-                        params,
-                    });
+                    self.out.send(Report::Set { side: number });
                     self.request_frames_of(1 - number, Need::Frames(1));
                     self.request_frames_of(number, Need::Light);
                     return Ok(());
                 }
-                Ok(None) => {}
+                Ok(false) => {}
                 Err(error) => {
                     self.fail(number, key, error)?;
                     return Ok(());

@@ -132,8 +132,6 @@ pub enum Report {
     Set {
         /// 0 is A, 1 is B.
         side: usize,
-        /// The values.
-        params: Params,
     },
     /// A and B restart together, because their pictures and times are not of the same frames.
     Restarted,

@@ -5,6 +5,7 @@ use crate::graph::effect::{Reason, Running, effective, idle, resting};
 use crate::shader::ShaderCompiler;
 use crate::workbench::Workbench;
 use crate::workbench::background::Background;
+use crate::workbench::desired::request::SideRequest;
 use crate::workbench::engine::report::GraphInfo;
 use egui::Ui;
 use std::collections::BTreeMap;
@@ -23,7 +24,7 @@ pub struct Found {
 }
 
 /// Their inputs: the running graph, and the set parameters.
-type Of = (Arc<GraphInfo>, Vec<(String, String)>);
+type Of = (Arc<GraphInfo>, SideRequest);
 
 /// Details of sides A and B.
 #[derive(Default)]
@@ -67,7 +68,7 @@ impl Workbench {
         let unknown = [0, 1].map(|side| {
             let of = (
                 self.sides[side].info.clone()?,
-                self.desired.sides[side].as_ref()?.params.clone(),
+                self.desired.sides[side].clone()?,
             );
             let is_known = self.effects.known[side]
                 .as_ref()
@@ -113,13 +114,11 @@ impl Workbench {
     }
 }
 
-fn find((info, set): &Of, compiler: &ShaderCompiler) -> Found {
+fn find((info, side): &Of, compiler: &ShaderCompiler) -> Found {
     let graph = &info.graph;
     let mut params = graph.params.clone();
-    for (name, text) in set {
-        // The build reports wrong values.
-        let _ = params.set(name, text);
-    }
+    // The build reports wrong values.
+    side.apply(&mut params);
     let set = Evaluated::new(graph, &params, info.variables.clone());
     let running = Running {
         set: &set,

@@ -138,6 +138,7 @@ impl Panel {
                 let reset = egui::Button::new(RichText::new("reset all")).small();
                 if ui.add_enabled(any, reset).clicked() {
                     side.params.clear();
+                    side.off.clear();
                 }
                 ui.checkbox(&mut self.only_changed, "changed")
                     .on_hover_text("Only parameters that are not at their default");

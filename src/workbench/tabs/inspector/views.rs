@@ -1,12 +1,13 @@
 //! Views that the graph offers: one click sets a few parameters, another puts them back.
 
 use super::Workbench;
+use crate::graph::param::Value;
 use crate::workbench::desired::edit;
 use egui::Ui;
 
-/// Earlier parameters of a view: side, name, value as RON.
+/// Earlier parameters of a view: side, name, value.
 #[derive(Default)]
-pub struct Before(Vec<(usize, String, Option<String>)>);
+pub struct Before(Vec<(usize, String, Option<Value>)>);
 
 impl Before {
     /// Whether no view is shown.
@@ -80,13 +81,7 @@ impl Workbench {
             let Some(desired) = self.desired.sides[side].as_mut() else {
                 continue;
             };
-            let place = desired.params.iter().position(|p| p.0 == name);
-            match (place, old) {
-                (Some(i), Some(old)) => desired.params[i].1 = old,
-                (Some(i), None) => drop(desired.params.remove(i)),
-                (None, Some(old)) => desired.params.push((name, old)),
-                (None, None) => {}
-            }
+            edit::put(desired, &name, old);
         }
     }
 }

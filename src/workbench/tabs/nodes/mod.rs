@@ -175,7 +175,7 @@ impl Workbench {
         else {
             return;
         };
-        let mut off = edit::off(desired, &info.params);
+        let mut off = desired.off.clone();
         let before = off.clone();
         self.graph_bar(ui);
         if !off.is_empty() {
@@ -219,7 +219,7 @@ impl Workbench {
             edit::set(desired, param, &value);
         }
         if off != before {
-            edit::set_off(desired, &off);
+            desired.off = off;
         }
     }
 
@@ -376,7 +376,7 @@ impl Workbench {
             }
             let about = "A with this pass, B without it, over the picture";
             if ui.button("with | without").on_hover_text(about).clicked() {
-                self.with_and_without(side, info, name);
+                self.with_and_without(side, name);
             }
             let about = "Only this pass and those that it needs; Inspect shows its first texture";
             if ui.button("solo").on_hover_text(about).clicked() {
@@ -411,18 +411,15 @@ impl Workbench {
     }
 
     /// Compares the picture with the same picture without a pass.
-    fn with_and_without(&mut self, side: usize, info: &GraphInfo, name: &str) {
-        let Some(base) = self.desired.sides[side].clone() else {
+    fn with_and_without(&mut self, side: usize, name: &str) {
+        let Some(base) = &self.desired.sides[side] else {
             return;
         };
-        let mut off = edit::off(&base, &info.params);
-        off.retain(|o| o != name);
-        let sides = [off.clone(), [off, vec![name.to_string()]].concat()].map(|off| {
-            let mut side = base.clone();
-            edit::set_off(&mut side, &off);
-            Some(side)
-        });
-        self.compare_sides(sides);
+        let mut with = base.clone();
+        with.off.retain(|o| o != name);
+        let mut without = with.clone();
+        without.off.push(name.to_string());
+        self.compare_sides([Some(with), Some(without)]);
         self.tabs.nodes.beside = true;
     }
 
