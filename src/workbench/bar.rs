@@ -9,6 +9,7 @@ use crate::workbench::desired::request::SideRequest;
 use crate::workbench::engine::Order;
 use crate::workbench::messages::AMBER;
 use crate::workbench::panel::control::CHANGED;
+use crate::workbench::tabs::surroundings::Surroundings;
 use crate::workbench::{Workbench, ron_files, short};
 use egui::Ui;
 
@@ -172,7 +173,7 @@ impl Workbench {
             .on_hover_text("Show them on the Scene tab")
             .clicked()
         {
-            self.tabs.open = crate::workbench::tabs::surroundings::TAB;
+            self.tabs.open::<Surroundings>();
         }
     }
 

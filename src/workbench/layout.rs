@@ -84,7 +84,7 @@ impl Workbench {
             for tab in TABS {
                 if ui
                     .selectable_label(
-                        self.tabs.open.is(tab),
+                        self.tabs.open.title == tab.title,
                         egui::RichText::new(tab.title).size(12.0),
                     )
                     .clicked()
@@ -95,7 +95,7 @@ impl Workbench {
         });
         ui.separator();
         // What no tab shows need not be made.
-        (self.desired.inspect, self.desired.table) = (None, None);
+        self.desired.read_back = None;
         (self.tabs.open.show)(self, ui, textures);
     }
 

@@ -20,6 +20,7 @@ mod panel;
 mod pending;
 pub mod picture;
 mod poll;
+pub mod read_back;
 mod tabs;
 mod watch;
 
@@ -43,7 +44,8 @@ use picture::{difference, view};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use tabs::tables;
+use tabs::TABS;
+use tabs::tables::Tables;
 
 /// Pictures that hosts keep for the interface: A, B, the comparison, the inspector.
 pub const PICTURES: usize = 4;
@@ -334,7 +336,7 @@ impl Workbench {
     fn show_tables(&mut self) {
         let fills = |o: &Arc<GraphInfo>| o.graph.pointer.is_some() && !o.graph.tables.is_empty();
         if self.sides[0].info.as_ref().is_some_and(fills) {
-            self.tabs.open = tables::TAB;
+            self.tabs.open::<Tables>();
         }
     }
 
@@ -367,7 +369,7 @@ impl Workbench {
             && shown(1)
             && self.scene.loading.is_none()
             && !self.comparison.work.is_working()
-            && !self.chart_awaits()
+            && !TABS.iter().any(|tab| (tab.awaits)(self))
             && !self.effects.awaits()
     }
 
@@ -411,7 +413,9 @@ impl Workbench {
         self.desired.bytes = maps || self.setup.events.is_some();
         self.find_effects(ui);
         self.send_request();
-        self.request_errors(ui);
+        for tab in TABS {
+            (tab.end_frame)(self, ui);
+        }
     }
 
     /// The picture has the size of the viewport, once that has stood still for a moment.

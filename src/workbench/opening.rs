@@ -77,7 +77,6 @@ impl Workbench {
             self.open_scene(&experiment.scene);
             self.scene.before = before.or(self.scene.before.take());
             self.desired.environment = picture_of(experiment);
-            self.view.picture.clone_from(&self.desired.environment);
         }
         self.experiment.file = Some(experiment.clone());
         self.desired.clock.at = experiment.time;
@@ -122,7 +121,6 @@ impl Workbench {
         }
         self.desired.scene = spec.to_string();
         self.desired.environment.clear();
-        self.view.picture.clear();
         self.desired.lights = None;
         self.undo.returning = false;
     }

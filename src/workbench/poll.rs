@@ -8,6 +8,7 @@ use crate::workbench::desired::save;
 use crate::workbench::engine::Engine;
 use crate::workbench::engine::report::{PictureReport, Report};
 use crate::workbench::picture::compare::MODES;
+use crate::workbench::tabs::TABS;
 use crate::workbench::{COMPARISON, NewPixels, Workbench, events};
 use serde_json::json;
 use std::sync::Arc;
@@ -43,11 +44,9 @@ impl Workbench {
         if let Some(why) = self.engine.failure() {
             self.replace_engine(&why);
         }
-        if let Some(pixels) = self.tabs.inspector.take(&self.setup.wake) {
-            self.show(pixels);
+        for tab in TABS {
+            (tab.poll)(self);
         }
-        self.poll_chart();
-        self.poll_sequence();
         let wait = match self.watch.take() {
             Ok(changed) => {
                 self.files_changed(&changed);
@@ -81,6 +80,13 @@ impl Workbench {
     }
 
     fn report(&mut self, report: Report) {
+        // A picture that is no longer wanted.
+        if matches!(&report, Report::Picture(p) if self.desired.sides[p.side].is_none()) {
+            return;
+        }
+        for tab in TABS {
+            (tab.report)(self, &report);
+        }
         match report {
             Report::Device(device) => {
                 self.event(
@@ -88,7 +94,6 @@ impl Workbench {
                     json!({ "name": device.name, "driver": device.driver }),
                 );
                 self.device = Some(device);
-                self.tabs.chart.restarted();
                 self.messages.trouble = None;
             }
             Report::Built {
@@ -111,7 +116,6 @@ impl Workbench {
                     json!({ "side": side, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
                         "revision": revision, "objects": objects }),
                 );
-                self.tabs.times.built(side, &info);
                 self.mended(side);
                 self.sides[side].info = Some(info);
             }
@@ -130,7 +134,6 @@ impl Workbench {
             Report::Set { side } => {
                 self.mended(side);
             }
-            Report::Restarted => self.tabs.times.restarted(),
             Report::Picture(picture) => self.picture_came(picture),
             Report::Pixels { side, frame, bytes } => {
                 let Some(picture) = self.sides[side]
@@ -166,32 +169,7 @@ impl Workbench {
                 self.return_to_scene();
                 self.send_request();
             }
-            Report::Texels(target, texels) => {
-                let info = self.sides[target.side.min(1)].info.as_ref();
-                let number = info.and_then(|i| i.graph.texture(&target.texture));
-                let volume = info
-                    .zip(number)
-                    .is_some_and(|(i, n)| i.textures.get(n).is_some_and(|t| t.volume));
-                self.tabs
-                    .inspector
-                    .note(target, *texels, volume, &self.setup.wake);
-            }
-            Report::Table(number, table, bytes) => self.tabs.tables.note(number, table, bytes),
             Report::Checks(side, failed) => self.sides[side].checks = failed,
-            Report::Captured(result) => {
-                let ok = result.is_ok();
-                let text = match result {
-                    Ok(path) => {
-                        self.tabs.gallery.forget();
-                        format!("captured {}", path.display())
-                    }
-                    Err(why) => format!("not captured: {why}"),
-                };
-                self.event("captured", json!({ "ok": ok, "text": text }));
-                self.tabs.gallery.captured(ok, &text);
-                self.messages.status = text;
-            }
-            Report::Error(result) => self.error_came(result),
             Report::DeviceFailed(text) => {
                 self.event("device failed", json!({ "text": text }));
                 self.device = None;
@@ -201,11 +179,13 @@ impl Workbench {
                 self.event("trouble", json!({ "text": text }));
                 self.messages.trouble = Some(text);
             }
+            // For tabs alone.
+            Report::Restarted | Report::Content(_) | Report::Captured(_) | Report::Error(_) => {}
         }
     }
 
     /// Has the host show these in place of those that wait for it.
-    fn show(&mut self, pixels: NewPixels) {
+    pub(super) fn show(&mut self, pixels: NewPixels) {
         // A frame without a picture keeps the last one.
         if pixels.bytes.is_some() || pixels.shared.is_some() {
             self.pixels.retain(|p| p.picture != pixels.picture);
@@ -221,11 +201,6 @@ impl Workbench {
     }
 
     fn picture_came(&mut self, picture: PictureReport) {
-        if self.desired.sides[picture.side].is_none() {
-            return;
-        }
-        self.tabs.times.note(&picture);
-        self.tabs.chart.note(&picture);
         let number = picture.side;
         let (bytes, shared) = (picture.bytes.clone(), picture.shared.clone());
         self.show(NewPixels {

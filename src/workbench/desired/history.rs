@@ -156,7 +156,6 @@ impl Workbench {
         self.experiment.name.clone_from(&before.name);
         self.layout.fixed_size = before.fixed_size;
         (self.experiment.file, self.undo.returning) = (None, false);
-        self.view.picture.clone_from(&self.desired.environment);
         self.undo
             .history
             .forget_scene((&failed.0, &failed.1), &before);
@@ -200,7 +199,6 @@ impl Workbench {
             != (&desired.scene, &desired.environment)
         {
             self.open_scene(&desired.scene);
-            self.view.picture.clone_from(&desired.environment);
             self.desired.environment = desired.environment;
             // It is seen as it was, not as an experiment would have it.
             self.undo.returning = desired.camera.is_some();

@@ -8,6 +8,7 @@ use crate::graph::run::Execution;
 use crate::lab::Session;
 use crate::scene::{Camera, Light, Scene};
 use crate::vulkan::DeviceId;
+use crate::workbench::read_back::ReadBack;
 use glam::Vec3;
 
 /// A graph with the parameters that are not at their defaults.
@@ -152,10 +153,8 @@ pub struct RenderRequest {
     pub revision: u64,
     /// Number of changes of the scene's files.
     pub scene_revision: u64,
-    /// The texture in the inspector.
-    pub inspect: Option<InspectTarget>,
-    /// The table shown, by the number that the graph gives it, of side A.
-    pub table: Option<usize>,
+    /// The resource that the open tab shows.
+    pub read_back: Option<ReadBack>,
     /// The device that paints the pictures; with one of the same kind they stay in its memory.
     pub window: Option<DeviceId>,
     /// Whether every picture is wanted in main memory; the last one before a rest comes there all

@@ -21,8 +21,8 @@ pub struct Key {
     pub revision: u64,
     /// Which scene was loaded.
     pub scene: u64,
-    /// Further resources to read back.
-    pub wanted: Vec<String>,
+    /// A further resource to read back.
+    pub wanted: Option<String>,
 }
 
 /// Something to build.

@@ -187,8 +187,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Reads the inspector's texture and the table: at once if nothing changes, else several times
-    /// a second.
+    /// Reads back what a tab asks for: at once if nothing changes, else several times a second.
     fn read_back(&mut self, number: usize) -> Result<(), LabError> {
         let side = &mut self.sides[number];
         let Some(session) = side.session.as_mut().filter(|_| !side.preview) else {
@@ -196,41 +195,12 @@ impl Run<'_> {
         };
         let now =
             side.frames_left == 0 || self.last_read_back.elapsed() > Duration::from_millis(150);
-        let target = self.desired.inspect.as_ref().filter(|l| l.side == number);
-        if !now || (target.is_none() && self.desired.table.is_none()) {
-            return Ok(());
-        }
-        self.last_read_back = Instant::now();
-        if let Some(target) = target {
-            match session.slice(
-                &target.texture,
-                target.mip,
-                target.layer,
-                target.axis,
-                target.slice,
-            ) {
-                Ok(texels) => {
-                    side.inspected = Some(target.clone());
-                    self.out
-                        .send(Report::Texels(target.clone(), Box::new(texels)));
-                }
-                Err(LabError::Vulkan(e)) => return Err(e.into()),
-                // Not made with these parameters: a build that makes it is on its way, or the
-                // window says so.
-                Err(_) => {}
+        let asked = self.desired.read_back.as_ref();
+        if let Some(asked) = asked.filter(|asked| now && asked.side() == number) {
+            self.last_read_back = Instant::now();
+            if let Some(content) = asked.read(session)? {
+                self.out.send(Report::Content(content));
             }
-        }
-        if number == 0
-            && let Some(number) = self.desired.table
-            && let Some(name) = session
-                .graph
-                .tables
-                .get(number)
-                .map(|t| t.value.list.value.buffer.clone())
-            && let Some(table) = session.table(number)
-        {
-            let bytes = session.buffer(&name)?;
-            self.out.send(Report::Table(number, table, bytes));
         }
         Ok(())
     }

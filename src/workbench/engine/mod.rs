@@ -24,7 +24,7 @@ use crate::results::timers::Rows;
 use crate::scene::{Scene, SceneError};
 use crate::vulkan::GpuOptions;
 use crate::workbench::background::Wake;
-use crate::workbench::desired::request::{InspectTarget, RenderRequest};
+use crate::workbench::desired::request::RenderRequest;
 use builder::{Done, Job, Key};
 use converge::Need;
 use crossbeam_channel::{Receiver, Sender, select, unbounded};
@@ -226,7 +226,6 @@ struct Side {
     fresh: bool,
     lights: bool,
     checked: Option<Key>,
-    inspected: Option<InspectTarget>,
     /// Pictures for the window's device.
     ring: pictures::Ring,
     /// The last frame reported, if its pixels are not in main memory yet.

@@ -13,16 +13,11 @@ use std::time::Instant;
 
 impl Run<'_> {
     pub(super) fn key(&self, side: &SideRequest, number: usize) -> Key {
-        let mut wanted = Vec::new();
-        if let Some(target) = self.desired.inspect.as_ref().filter(|l| l.side == number) {
-            wanted.push(target.texture.clone());
-        }
-        if number == 0
-            && let (Some(table), Some(loaded)) = (self.desired.table, &self.sides[0].loaded)
-            && let Some(table) = loaded.graph.tables.get(table)
-        {
-            wanted.push(table.value.list.value.buffer.clone());
-        }
+        let asked = self.desired.read_back.as_ref();
+        let graph = self.sides[number].loaded.as_ref().map(|l| &*l.graph);
+        let wanted = asked
+            .filter(|asked| asked.side() == number)
+            .and_then(|asked| asked.resource(graph));
         Key {
             side: side.clone(),
             size: self.desired.size,
@@ -147,7 +142,6 @@ impl Run<'_> {
                 let side = &mut self.sides[number];
                 side.preview = done.preview;
                 side.lights = true;
-                side.inspected = None;
                 side.failed = None;
                 let info = info(&session, &loaded);
                 let change = session.program.change;

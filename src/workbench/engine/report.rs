@@ -9,11 +9,9 @@ use crate::graph::param::Params;
 use crate::graph::plan::TexturePlan;
 use crate::graph::run::Change;
 use crate::graph::run::FrameTimes;
-use crate::graph::table::Table;
-use crate::lab::Texels;
 use crate::scene::Scene;
 use crate::vulkan::Buffer;
-use crate::workbench::desired::request::InspectTarget;
+use crate::workbench::read_back::Content;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -154,10 +152,8 @@ pub enum Report {
     Loaded(Arc<Scene>),
     /// A scene could not be loaded; the one before stays.
     LoadFailed(String),
-    /// Texels for the inspector.
-    Texels(InspectTarget, Box<Texels>),
-    /// Number of a table, where its columns lie, and the bytes of its buffer, of side A.
-    Table(usize, Table, Vec<u8>),
+    /// A resource that a tab asked for.
+    Content(Content),
     /// Messages of the graph's checks that failed.
     Checks(usize, Vec<String>),
     /// A capture was made, or why not.

@@ -16,16 +16,10 @@ pub struct View {
     pub split: f32,
     /// Whether B is shown when flipping.
     pub flipped: bool,
-    /// Text of the field for the sky's picture.
-    pub picture: String,
     /// The times that are on the picture.
     pub timers: Rows,
     /// Multiplies the absolute difference.
     pub gain: u32,
-    /// Mouse.
-    pub steering: motion::Mode,
-    /// Speed of keys, 1 crosses the scene in ten seconds.
-    pub speed: f32,
     dragging_split: bool,
     /// Zoom and pan on the screen.
     pub zoom: Zoom,
@@ -39,11 +33,8 @@ impl Default for View {
             mode: Mode::Split,
             split: 0.5,
             flipped: false,
-            picture: String::new(),
             timers: Rows::None,
             gain: 8,
-            steering: motion::Mode::Orbit,
-            speed: 1.0,
             dragging_split: false,
             zoom: Zoom::default(),
             place: None,
@@ -320,9 +311,9 @@ impl Workbench {
                 ui,
                 response,
                 camera,
-                self.view.steering,
+                self.tabs.surroundings.steering,
                 self.scene.diagonal,
-                self.view.speed,
+                self.tabs.surroundings.speed,
             );
         }
     }

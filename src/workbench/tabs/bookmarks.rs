@@ -2,10 +2,11 @@
 
 use crate::camera_path::{self, CameraPath, Key};
 use crate::experiment::{PlacedCamera, checked_name};
-use crate::lab::{LabError, Viewpoint};
+use crate::lab::LabError;
+use crate::workbench::panel::control::named;
 use crate::workbench::{Workbench, ron_files, short};
-use egui::Ui;
-use std::path::PathBuf;
+use egui::{Ui, WidgetType};
+use std::path::{Path, PathBuf};
 
 /// State of this section.
 #[derive(Default)]
@@ -16,18 +17,18 @@ pub struct Bookmarks {
     said: String,
 }
 
-impl Workbench {
-    /// Buttons for the kept cameras of the scene, and a field to keep this one.
-    pub(crate) fn bookmark_rows(&mut self, ui: &mut Ui) {
-        let folder = self
-            .setup
-            .home
-            .root
-            .join("captures/cameras")
-            .join(short(&self.desired.scene));
-        let known = self.tabs.bookmarks.known.take().filter(|k| k.0 == folder);
+/// The button that was clicked.
+enum Asked {
+    Go(PathBuf),
+    Remove(PathBuf),
+    Keep,
+}
+
+impl Bookmarks {
+    fn rows(&mut self, ui: &mut Ui, folder: PathBuf) -> Option<Asked> {
+        let mut asked = None;
+        let known = self.known.take().filter(|k| k.0 == folder);
         let files = known.map_or_else(|| ron_files(&folder), |k| k.1);
-        let (mut go, mut remove) = (None, None);
         if !files.is_empty() {
             ui.horizontal_wrapped(|ui| {
                 ui.label("kept:");
@@ -35,80 +36,81 @@ impl Workbench {
                     let button = ui.small_button(short(&file.to_string_lossy()));
                     let button = button.on_hover_text("Click: go there. Right click: remove");
                     if button.clicked() {
-                        go = Some(file.clone());
+                        asked = Some(Asked::Go(file.clone()));
                     }
                     if button.secondary_clicked() {
-                        remove = Some(file.clone());
+                        asked = Some(Asked::Remove(file.clone()));
                     }
                 }
             });
         }
-        let mut keep = false;
+        self.known = Some((folder, files));
         ui.horizontal(|ui| {
-            let field = egui::TextEdit::singleline(&mut self.tabs.bookmarks.name)
-                .hint_text("name")
-                .desired_width(100.0);
-            let field = ui.add(field);
-            field.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "camera name")
-            });
+            let field = egui::TextEdit::singleline(&mut self.name).hint_text("name");
+            let field = ui.add(field.desired_width(100.0));
+            named(&field, WidgetType::TextEdit, "camera name");
             let enter = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-            let named = !self.tabs.bookmarks.name.trim().is_empty();
-            let button = ui.add_enabled(named, egui::Button::new("keep camera").small());
-            keep = button
-                .on_hover_text("Keeps this camera in captures/cameras")
-                .clicked()
-                || enter && named;
-            ui.weak(&self.tabs.bookmarks.said);
+            let is_named = !self.name.trim().is_empty();
+            let button = ui.add_enabled(is_named, egui::Button::new("keep camera").small());
+            let button = button.on_hover_text("Keeps this camera in captures/cameras");
+            if button.clicked() || enter && is_named {
+                asked = Some(Asked::Keep);
+            }
+            ui.weak(&self.said);
         });
-        self.tabs.bookmarks.known = Some((folder.clone(), files));
-        if let Some(file) = go {
-            self.go_to(&file);
-        }
-        if let Some(file) = remove {
-            self.tabs.bookmarks.said = match std::fs::remove_file(&file) {
-                Ok(()) => String::new(),
-                Err(e) => format!("'{}' stays: {e}", file.display()),
-            };
-            self.tabs.bookmarks.known = None;
-        }
-        if keep {
-            self.tabs.bookmarks.said = match self.keep_camera(&folder) {
-                Ok(name) => format!("kept as {name}"),
-                Err(e) => e.to_string(),
-            };
-            self.tabs.bookmarks.known = None;
+        asked
+    }
+}
+
+impl Workbench {
+    /// Buttons for the kept cameras of the scene, and a field to keep this one.
+    pub(super) fn bookmark_rows(&mut self, ui: &mut Ui) {
+        let cameras = self.setup.home.root.join("captures/cameras");
+        let folder = cameras.join(short(&self.desired.scene));
+        let bookmarks = &mut self.tabs.surroundings.bookmarks;
+        match bookmarks.rows(ui, folder.clone()) {
+            Some(Asked::Go(file)) => self.go_to(&file),
+            Some(Asked::Remove(file)) => {
+                bookmarks.said = match std::fs::remove_file(&file) {
+                    Ok(()) => String::new(),
+                    Err(e) => format!("'{}' stays: {e}", file.display()),
+                };
+                bookmarks.known = None;
+            }
+            Some(Asked::Keep) => {
+                let said = match self.keep_camera(&folder) {
+                    Ok(name) => format!("kept as {name}"),
+                    Err(e) => e.to_string(),
+                };
+                let bookmarks = &mut self.tabs.surroundings.bookmarks;
+                (bookmarks.said, bookmarks.known) = (said, None);
+            }
+            None => {}
         }
     }
 
-    fn keep_camera(&mut self, folder: &std::path::Path) -> Result<String, LabError> {
-        let name = checked_name(self.tabs.bookmarks.name.trim())?;
+    fn keep_camera(&mut self, folder: &Path) -> Result<String, LabError> {
+        let name = checked_name(self.tabs.surroundings.bookmarks.name.trim())?;
         let Some(camera) = &self.desired.camera else {
             return Err(LabError::Request("there is no camera yet".into()));
         };
         let mut path = CameraPath::default();
         camera_path::insert(&mut path, Key::new(0.0, &PlacedCamera::from(camera)))?;
         camera_path::write(&path, &folder.join(format!("{name}.ron")), false)?;
-        self.tabs.bookmarks.name.clear();
+        self.tabs.surroundings.bookmarks.name.clear();
         Ok(name)
     }
 
-    fn go_to(&mut self, file: &std::path::Path) {
-        let Some(scene) = &self.scene.loaded else {
-            return;
-        };
+    fn go_to(&mut self, file: &Path) {
         match CameraPath::read(file) {
             Ok(path) => {
                 if let Some(key) = path.keys.first() {
-                    let placed = PlacedCamera {
-                        up: key.up,
-                        ..PlacedCamera::new(key.eye, key.target, key.fov_y)
-                    };
-                    self.desired.camera = Some(Viewpoint::placed(&placed, scene).camera);
+                    self.go_to_key(key);
                 }
             }
             Err(errors) => {
-                self.tabs.bookmarks.said = errors.first().map_or(String::new(), ToString::to_string)
+                let text = errors.first().map_or(String::new(), ToString::to_string);
+                self.tabs.surroundings.bookmarks.said = text;
             }
         }
     }

@@ -7,12 +7,11 @@ use crate::results::capture::{self, Summary};
 use crate::workbench::background::Background;
 use crate::workbench::desired::save;
 use crate::workbench::engine::Order;
+use crate::workbench::engine::report::Report;
 use crate::workbench::{Workbench, short};
-use egui::{ColorImage, TextureHandle, Ui, Vec2};
+use egui::{ColorImage, TextureHandle, TextureId, Ui, Vec2};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-
-pub(crate) const TAB: Tab = Tab::new("Save", |workbench, ui, _| workbench.gallery_tab(ui));
 
 /// State of this tab.
 #[derive(Default)]
@@ -33,15 +32,17 @@ pub struct Gallery {
     replayed: String,
 }
 
-impl Gallery {
-    /// How a capture ended.
-    pub fn captured(&mut self, ok: bool, text: &str) {
-        self.captured = Some((ok, text.to_string()));
+impl Tab for Gallery {
+    const TITLE: &'static str = "Save";
+
+    fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
+        workbench.gallery_tab(ui);
     }
 
-    /// The list of captures is out of date.
-    pub fn forget(&mut self) {
-        self.captures = None;
+    fn report(workbench: &mut Workbench, report: &Report) {
+        if let Report::Captured(result) = report {
+            workbench.captured(result);
+        }
     }
 }
 
@@ -49,8 +50,7 @@ impl Gallery {
 const THUMBNAIL: u32 = 160;
 
 impl Workbench {
-    /// The tab.
-    pub(crate) fn gallery_tab(&mut self, ui: &mut Ui) {
+    fn gallery_tab(&mut self, ui: &mut Ui) {
         ui.strong("Experiment");
         self.save_row(ui);
         ui.separator();
@@ -243,6 +243,20 @@ impl Workbench {
         }
     }
 
+    fn captured(&mut self, result: &Result<PathBuf, String>) {
+        let ok = result.is_ok();
+        let text = match result {
+            Ok(path) => {
+                self.tabs.gallery.captures = None;
+                format!("captured {}", path.display())
+            }
+            Err(why) => format!("not captured: {why}"),
+        };
+        self.event("captured", serde_json::json!({ "ok": ok, "text": text }));
+        self.tabs.gallery.captured = Some((ok, text.clone()));
+        self.messages.status = text;
+    }
+
     fn gallery_rows(&mut self, ui: &mut Ui) {
         let folder = self.setup.home.root.join("captures");
         while let Some((path, image)) = self.tabs.gallery.decoding.take() {
@@ -259,7 +273,7 @@ impl Workbench {
             self.tabs.gallery.replayed = text;
         }
         if ui.small_button("refresh").clicked() {
-            self.tabs.gallery.forget();
+            self.tabs.gallery.captures = None;
         }
         let captures = self
             .tabs

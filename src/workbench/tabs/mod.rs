@@ -1,4 +1,4 @@
-//! The tabs of the right panel: a file or folder each, which says title and content in its `TAB`.
+//! The tabs of the right panel: a file or folder each, with its state and its [`Tab`].
 
 pub(crate) mod bookmarks;
 pub(crate) mod chart;
@@ -12,71 +12,111 @@ pub(crate) mod tables;
 pub(crate) mod times;
 
 use super::Workbench;
+use super::engine::report::Report;
 use egui::{TextureId, Ui};
 
-/// A part of the interface; it may show the hosts' pictures.
-type Show = fn(&mut Workbench, &mut Ui, &[TextureId]);
+/// A tab of the right panel. The type that implements it is the tab's state, a field of [`Tabs`].
+pub(crate) trait Tab {
+    const TITLE: &'static str;
 
-/// A tab of the right panel.
-#[derive(Clone, Copy)]
-pub(crate) struct Tab {
-    pub(crate) title: &'static str,
-    pub(crate) show: Show,
-    /// The middle of the window while the tab is open.
-    pub(crate) middle: Show,
-}
+    /// Shows the tab. `textures` are the hosts' pictures.
+    fn show(workbench: &mut Workbench, ui: &mut Ui, textures: &[TextureId]);
 
-impl Tab {
-    const fn new(title: &'static str, show: Show) -> Tab {
-        Tab {
-            title,
-            show,
-            middle: |workbench, ui, textures| workbench.picture(ui, textures),
-        }
+    /// Shows the middle of the window while the tab is open.
+    fn middle(workbench: &mut Workbench, ui: &mut Ui, textures: &[TextureId]) {
+        workbench.picture(ui, textures);
     }
 
-    pub(crate) fn is(self, other: Tab) -> bool {
-        self.title == other.title
+    /// Takes in a report of the engine, before the workbench does.
+    fn report(_workbench: &mut Workbench, _report: &Report) {}
+
+    /// Takes in the messages of the tab's own threads.
+    fn poll(_workbench: &mut Workbench) {}
+
+    /// Ends a frame of the window, after the request was sent.
+    fn end_frame(_workbench: &mut Workbench, _ui: &Ui) {}
+
+    /// Whether a result is about to come.
+    fn awaits(_workbench: &Workbench) -> bool {
+        false
+    }
+}
+
+/// The functions of a tab.
+#[derive(Clone, Copy)]
+pub(crate) struct Entry {
+    pub(crate) title: &'static str,
+    pub(crate) show: fn(&mut Workbench, &mut Ui, &[TextureId]),
+    pub(crate) middle: fn(&mut Workbench, &mut Ui, &[TextureId]),
+    pub(crate) report: fn(&mut Workbench, &Report),
+    pub(crate) poll: fn(&mut Workbench),
+    pub(crate) end_frame: fn(&mut Workbench, &Ui),
+    pub(crate) awaits: fn(&Workbench) -> bool,
+}
+
+impl Entry {
+    const fn of<T: Tab>() -> Entry {
+        Entry {
+            title: T::TITLE,
+            show: T::show,
+            middle: T::middle,
+            report: T::report,
+            poll: T::poll,
+            end_frame: T::end_frame,
+            awaits: T::awaits,
+        }
     }
 }
 
 /// The tabs, in order.
-pub(crate) const TABS: [Tab; 8] = [
-    surroundings::TAB,
-    times::TAB,
-    chart::TAB,
-    nodes::TAB,
-    inspector::TAB,
-    tables::TAB,
-    paths::TAB,
-    gallery::TAB,
+pub(crate) const TABS: [Entry; 8] = [
+    Entry::of::<surroundings::Surroundings>(),
+    Entry::of::<times::Times>(),
+    Entry::of::<chart::Chart>(),
+    Entry::of::<nodes::Nodes>(),
+    Entry::of::<inspector::Inspector>(),
+    Entry::of::<tables::Tables>(),
+    Entry::of::<paths::Paths>(),
+    Entry::of::<gallery::Gallery>(),
 ];
 
 /// The open tab, and the state of each.
 pub(crate) struct Tabs {
-    pub(crate) open: Tab,
+    pub(crate) open: Entry,
+    pub(crate) surroundings: surroundings::Surroundings,
     pub(crate) times: times::Times,
     pub(crate) chart: chart::Chart,
     pub(crate) nodes: nodes::Nodes,
     pub(crate) inspector: inspector::Inspector,
     pub(crate) tables: tables::Tables,
     pub(crate) paths: paths::Paths,
-    pub(crate) bookmarks: bookmarks::Bookmarks,
     pub(crate) gallery: gallery::Gallery,
 }
 
 impl Default for Tabs {
     fn default() -> Tabs {
         Tabs {
-            open: surroundings::TAB,
+            open: TABS[0],
+            surroundings: Default::default(),
             times: Default::default(),
             chart: Default::default(),
             nodes: Default::default(),
             inspector: Default::default(),
             tables: Default::default(),
             paths: Default::default(),
-            bookmarks: Default::default(),
             gallery: Default::default(),
         }
+    }
+}
+
+impl Tabs {
+    /// Opens a tab.
+    pub(crate) fn open<T: Tab>(&mut self) {
+        self.open = Entry::of::<T>();
+    }
+
+    /// Whether a tab is open.
+    pub(crate) fn shows<T: Tab>(&self) -> bool {
+        self.open.title == T::TITLE
     }
 }

@@ -5,12 +5,10 @@ use super::sequence::Sequence;
 use crate::camera_path::{self, CameraPath, Key};
 use crate::experiment::{PlacedCamera, checked_name};
 use crate::lab::{LabError, Viewpoint};
-use crate::workbench::panel::control::spin;
+use crate::workbench::panel::control::{named, spin};
 use crate::workbench::{Workbench, ron_files, short};
-use egui::{DragValue, Ui};
+use egui::{DragValue, TextureId, Ui};
 use std::path::PathBuf;
-
-pub(crate) const TAB: Tab = Tab::new("Motion", |workbench, ui, _| workbench.paths_tab(ui));
 
 /// State of this tab.
 pub struct Paths {
@@ -36,9 +34,20 @@ impl Default for Paths {
     }
 }
 
+impl Tab for Paths {
+    const TITLE: &'static str = "Motion";
+
+    fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
+        workbench.paths_tab(ui);
+    }
+
+    fn poll(workbench: &mut Workbench) {
+        workbench.poll_sequence();
+    }
+}
+
 impl Workbench {
-    /// The tab.
-    pub(crate) fn paths_tab(&mut self, ui: &mut Ui) {
+    fn paths_tab(&mut self, ui: &mut Ui) {
         ui.strong("Camera path");
         self.path_files(ui);
         self.path_keys(ui);
@@ -48,145 +57,147 @@ impl Workbench {
     }
 
     fn path_files(&mut self, ui: &mut Ui) {
-        let folder = self.setup.home.root.join("configs/paths");
         ui.horizontal(|ui| {
-            ui.menu_button("open", |ui| {
-                for file in ron_files(&folder) {
-                    if ui.button(short(&file.to_string_lossy())).clicked() {
-                        match CameraPath::read(&file) {
-                            Ok(path) => {
-                                self.tabs.paths.path = path;
-                                self.tabs.paths.name = short(&file.to_string_lossy());
-                                self.tabs.paths.taken = false;
-                            }
-                            Err(errors) => self.sides[0].errors = errors,
-                        }
-                        ui.close();
-                    }
-                }
-            });
-            let edit =
-                ui.add(egui::TextEdit::singleline(&mut self.tabs.paths.name).desired_width(100.0));
-            edit.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "path name")
-            });
-            if edit.changed() {
-                self.tabs.paths.taken = false;
-            }
-            let text = if self.tabs.paths.taken {
-                "replace it"
-            } else {
-                "save path"
+            ui.menu_button("open", |ui| self.path_menu(ui));
+            let paths = &mut self.tabs.paths;
+            let field = egui::TextEdit::singleline(&mut paths.name).desired_width(100.0);
+            let field = ui.add(field);
+            named(&field, egui::WidgetType::TextEdit, "path name");
+            paths.taken &= !field.changed();
+            let text = match paths.taken {
+                true => "replace it",
+                false => "save path",
             };
-            if ui
-                .add_enabled(
-                    !self.tabs.paths.path.keys.is_empty(),
-                    egui::Button::new(text),
-                )
-                .clicked()
-            {
-                match self.save_path(self.tabs.paths.taken) {
-                    Ok(file) => {
-                        self.messages.status = format!("saved {}", file.display());
-                        self.event(
-                            "saved",
-                            serde_json::json!({ "path": file.display().to_string() }),
-                        );
-                        self.tabs.paths.taken = false;
-                    }
-                    Err(e) => {
-                        self.tabs.paths.taken = true;
-                        self.messages.status = e.to_string();
-                    }
-                }
+            let save = ui.add_enabled(!paths.path.keys.is_empty(), egui::Button::new(text));
+            if save.clicked() {
+                self.save_path();
             }
         });
     }
 
-    fn path_file(&self) -> Result<PathBuf, LabError> {
-        Ok(self
-            .setup
-            .home
-            .root
-            .join("configs/paths")
-            .join(format!("{}.ron", checked_name(&self.tabs.paths.name)?)))
+    fn path_menu(&mut self, ui: &mut Ui) {
+        for file in ron_files(&self.setup.home.root.join("configs/paths")) {
+            let name = short(&file.to_string_lossy());
+            if !ui.button(&name).clicked() {
+                continue;
+            }
+            match CameraPath::read(&file) {
+                Ok(path) => {
+                    let paths = &mut self.tabs.paths;
+                    (paths.path, paths.name, paths.taken) = (path, name, false);
+                }
+                Err(errors) => self.sides[0].errors = errors,
+            }
+            ui.close();
+        }
     }
 
-    fn save_path(&self, replace: bool) -> Result<PathBuf, LabError> {
-        let file = self.path_file()?;
-        camera_path::write(&self.tabs.paths.path, &file, replace)?;
+    /// Saves the path. An existing file is replaced only after a second click.
+    fn save_path(&mut self) {
+        let result = self.write_path();
+        self.tabs.paths.taken = result.is_err();
+        match result {
+            Ok(file) => {
+                let path = file.display().to_string();
+                self.messages.status = format!("saved {path}");
+                self.event("saved", serde_json::json!({ "path": path }));
+            }
+            Err(e) => self.messages.status = e.to_string(),
+        }
+    }
+
+    fn write_path(&self) -> Result<PathBuf, LabError> {
+        let paths = &self.tabs.paths;
+        let folder = self.setup.home.root.join("configs/paths");
+        let file = folder.join(format!("{}.ron", checked_name(&paths.name)?));
+        camera_path::write(&paths.path, &file, paths.taken)?;
         Ok(file)
     }
 
     fn path_keys(&mut self, ui: &mut Ui) {
+        self.path_bar(ui);
+        let asked = key_rows(ui, &self.tabs.paths.path.keys);
+        let paths = &mut self.tabs.paths;
+        match asked {
+            Some(Asked::Move(i, time)) => {
+                if let Err(e) = camera_path::move_key(&mut paths.path, i, time) {
+                    self.messages.status = e.to_string();
+                }
+            }
+            Some(Asked::Remove(i)) => {
+                camera_path::remove(&mut paths.path, i);
+                paths.follow &= !paths.path.keys.is_empty();
+            }
+            Some(Asked::Go(key)) => self.go_to_key(&key),
+            None => {}
+        }
+        let paths = &self.tabs.paths;
+        let follows = paths.follow && !paths.path.keys.is_empty();
+        self.desired.path = follows.then(|| paths.path.clone());
+    }
+
+    fn path_bar(&mut self, ui: &mut Ui) {
         let now = self.sides[0].picture.as_ref().map_or(0.0, |p| p.time);
+        let paths = &mut self.tabs.paths;
         ui.horizontal(|ui| {
             let add = ui
                 .button("add key")
                 .on_hover_text("The camera as it stands now, a second after the last key");
             if let Some(camera) = self.desired.camera.as_ref().filter(|_| add.clicked()) {
-                let time = self
-                    .tabs
-                    .paths
-                    .path
-                    .keys
-                    .last()
-                    .map_or(0.0, |k| k.time + 1.0);
+                let time = paths.path.keys.last().map_or(0.0, |k| k.time + 1.0);
                 let key = Key::new(time, &PlacedCamera::from(camera));
-                if let Err(e) = camera_path::insert(&mut self.tabs.paths.path, key) {
+                if let Err(e) = camera_path::insert(&mut paths.path, key) {
                     self.messages.status = e.to_string();
                 }
             }
-            let can = !self.tabs.paths.path.keys.is_empty();
-            let follow = ui.add_enabled(
-                can,
-                egui::Checkbox::new(&mut self.tabs.paths.follow, "follow"),
-            );
-            follow.on_hover_text("The camera follows the path in the scene's time; play starts it");
-            ui.checkbox(&mut self.tabs.paths.path.repeat, "repeat");
+            let follow = egui::Checkbox::new(&mut paths.follow, "follow");
+            ui.add_enabled(!paths.path.keys.is_empty(), follow)
+                .on_hover_text("The camera follows the path in the scene's time; play starts it");
+            ui.checkbox(&mut paths.path.repeat, "repeat");
             ui.weak(format!("{now:.2} s"));
         });
-        let mut remove = None;
-        let mut moved = None;
-        let mut go = None;
-        egui::ScrollArea::vertical()
-            .max_height(240.0)
-            .show(ui, |ui| {
-                for (i, key) in self.tabs.paths.path.keys.iter().enumerate() {
-                    ui.horizontal(|ui| {
-                        let mut time = key.time;
-                        let field = DragValue::new(&mut time).speed(0.05).suffix(" s");
-                        if spin(ui, field, &format!("time of key {}", i + 1)).changed() {
-                            moved = Some((i, time));
-                        }
-                        let (x, y, z) = key.eye;
-                        ui.weak(format!("{x:.2} {y:.2} {z:.2}"));
-                        if ui.small_button("go").clicked() {
-                            go = Some(*key);
-                        }
-                        if ui.small_button("remove").clicked() {
-                            remove = Some(i);
-                        }
-                    });
-                }
-            });
-        if let Some((i, time)) = moved
-            && let Err(e) = camera_path::move_key(&mut self.tabs.paths.path, i, time)
-        {
-            self.messages.status = e.to_string();
-        }
-        if let Some(i) = remove {
-            camera_path::remove(&mut self.tabs.paths.path, i);
-            self.tabs.paths.follow &= !self.tabs.paths.path.keys.is_empty();
-        }
-        if let (Some(key), Some(scene)) = (go, &self.scene.loaded) {
+    }
+
+    /// Moves the camera to a key of a path.
+    pub(super) fn go_to_key(&mut self, key: &Key) {
+        if let Some(scene) = &self.scene.loaded {
             let placed = PlacedCamera {
                 up: key.up,
                 ..PlacedCamera::new(key.eye, key.target, key.fov_y)
             };
             self.desired.camera = Some(Viewpoint::placed(&placed, scene).camera);
         }
-        self.desired.path = (self.tabs.paths.follow && !self.tabs.paths.path.keys.is_empty())
-            .then(|| self.tabs.paths.path.clone());
     }
+}
+
+/// The action on a key.
+enum Asked {
+    Move(usize, f64),
+    Remove(usize),
+    Go(Key),
+}
+
+fn key_rows(ui: &mut Ui, keys: &[Key]) -> Option<Asked> {
+    let mut asked = None;
+    let rows = egui::ScrollArea::vertical().max_height(240.0);
+    rows.show(ui, |ui| {
+        for (i, key) in keys.iter().enumerate() {
+            ui.horizontal(|ui| {
+                let mut time = key.time;
+                let field = DragValue::new(&mut time).speed(0.05).suffix(" s");
+                if spin(ui, field, &format!("time of key {}", i + 1)).changed() {
+                    asked = Some(Asked::Move(i, time));
+                }
+                let (x, y, z) = key.eye;
+                ui.weak(format!("{x:.2} {y:.2} {z:.2}"));
+                if ui.small_button("go").clicked() {
+                    asked = Some(Asked::Go(*key));
+                }
+                if ui.small_button("remove").clicked() {
+                    asked = Some(Asked::Remove(i));
+                }
+            });
+        }
+    });
+    asked
 }

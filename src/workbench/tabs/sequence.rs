@@ -77,7 +77,7 @@ impl Drop for Running {
 
 impl Workbench {
     /// Takes in the end of a sequence.
-    pub(crate) fn poll_sequence(&mut self) {
+    pub(super) fn poll_sequence(&mut self) {
         let sequence = &mut self.tabs.paths.sequence;
         let Some(running) = &mut sequence.running else {
             return;
@@ -101,7 +101,7 @@ impl Workbench {
     }
 
     /// The section.
-    pub(crate) fn sequence_rows(&mut self, ui: &mut Ui) {
+    pub(super) fn sequence_rows(&mut self, ui: &mut Ui) {
         let sequence = &mut self.tabs.paths.sequence;
         let idle = sequence.running.is_none();
         let mut render = false;

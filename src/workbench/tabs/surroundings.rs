@@ -1,6 +1,7 @@
 //! Camera, lights, sky and time.
 
 use super::Tab;
+use super::bookmarks::Bookmarks;
 use crate::lab::Viewpoint;
 use crate::scene::Light;
 use crate::scene::light::Quantity;
@@ -9,10 +10,38 @@ use crate::workbench::desired::request::LightState;
 use crate::workbench::messages::AMBER;
 use crate::workbench::panel::control::spin;
 use crate::workbench::picture::motion;
-use egui::{DragValue, RichText, Ui};
+use egui::{DragValue, RichText, TextureId, Ui};
 use glam::Vec3;
 
-pub(crate) const TAB: Tab = Tab::new("Scene", |workbench, ui, _| workbench.surroundings(ui));
+/// State of this tab.
+pub(crate) struct Surroundings {
+    /// The effect of the mouse on the camera.
+    pub(crate) steering: motion::Mode,
+    /// Speed of keys, 1 crosses the scene in ten seconds.
+    pub(crate) speed: f32,
+    /// Text of the field for the sky's picture, and the scene and the picture that it was set from.
+    picture: (String, [String; 2]),
+    pub(super) bookmarks: Bookmarks,
+}
+
+impl Default for Surroundings {
+    fn default() -> Self {
+        Surroundings {
+            steering: motion::Mode::Orbit,
+            speed: 1.0,
+            picture: Default::default(),
+            bookmarks: Bookmarks::default(),
+        }
+    }
+}
+
+impl Tab for Surroundings {
+    const TITLE: &'static str = "Scene";
+
+    fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
+        workbench.surroundings(ui);
+    }
+}
 
 const RGB: [&str; 3] = ["red", "green", "blue"];
 
@@ -33,8 +62,7 @@ fn metres(ui: &mut Ui, label: &str, v: &mut Vec3) {
 }
 
 impl Workbench {
-    /// The section.
-    pub(crate) fn surroundings(&mut self, ui: &mut Ui) {
+    fn surroundings(&mut self, ui: &mut Ui) {
         egui::ScrollArea::vertical()
             .auto_shrink(false)
             .show(ui, |ui| {
@@ -65,11 +93,19 @@ impl Workbench {
 
     fn camera(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
-            ui.selectable_value(&mut self.view.steering, motion::Mode::Orbit, "orbit")
-                .on_hover_text("Drag turns around the target, the wheel comes nearer");
-            ui.selectable_value(&mut self.view.steering, motion::Mode::Fly, "fly")
-                .on_hover_text("Drag looks around, W A S D Q E move");
-            let speed = DragValue::new(&mut self.view.speed)
+            ui.selectable_value(
+                &mut self.tabs.surroundings.steering,
+                motion::Mode::Orbit,
+                "orbit",
+            )
+            .on_hover_text("Drag turns around the target, the wheel comes nearer");
+            ui.selectable_value(
+                &mut self.tabs.surroundings.steering,
+                motion::Mode::Fly,
+                "fly",
+            )
+            .on_hover_text("Drag looks around, W A S D Q E move");
+            let speed = DragValue::new(&mut self.tabs.surroundings.speed)
                 .range(0.01..=100.0)
                 .speed(0.05)
                 .prefix("speed x ");
@@ -210,9 +246,13 @@ impl Workbench {
     /// A field for the file of another sky. Returns true if one was requested; the light must not
     /// be edited then.
     fn picture_file(&mut self, ui: &mut Ui) -> bool {
-        ui.horizontal(|ui| {
-            let field =
-                egui::TextEdit::singleline(&mut self.view.picture).hint_text("sky.hdr or sky.exr");
+        let shown = [&self.desired.scene, &self.desired.environment].map(String::clone);
+        let (text, of) = &mut self.tabs.surroundings.picture;
+        if *of != shown {
+            (*text, *of) = (shown[1].clone(), shown);
+        }
+        let asked = ui.horizontal(|ui| {
+            let field = egui::TextEdit::singleline(text).hint_text("sky.hdr or sky.exr");
             let field = ui.add(field.desired_width(180.0));
             crate::workbench::panel::control::named(
                 &field,
@@ -220,21 +260,19 @@ impl Workbench {
                 "picture of the sky",
             );
             let done = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-            let clicked = ui
+            let load = ui
                 .button("load")
-                .on_hover_text("A picture of the sky; empty: the scene's own")
-                .clicked();
-            let asked = (done || clicked) && self.view.picture.trim() != self.desired.environment;
-            if asked {
-                if self.missing_scene().is_none() {
-                    self.scene.before = Some(self.state());
-                }
-                self.desired.environment = self.view.picture.trim().into();
-                self.desired.lights = None;
-            }
-            asked
-        })
-        .inner
+                .on_hover_text("A picture of the sky; empty: the scene's own");
+            (load.clicked() || done).then(|| text.trim().to_string())
+        });
+        let asked = asked.inner.filter(|file| *file != self.desired.environment);
+        let Some(file) = asked else { return false };
+        if self.missing_scene().is_none() {
+            self.scene.before = Some(self.state());
+        }
+        self.desired.environment = file;
+        self.desired.lights = None;
+        true
     }
 }
 

@@ -3,10 +3,10 @@
 use super::Tab;
 use crate::graph::table::{Cell, CellKind, Column, Table, decode};
 use crate::workbench::Workbench;
-use egui::{Align2, FontId, Ui};
+use crate::workbench::engine::report::Report;
+use crate::workbench::read_back::{Content, ReadBack};
+use egui::{Align2, FontId, TextureId, Ui};
 use egui_extras::{Column as Width, TableBuilder};
-
-pub(crate) const TAB: Tab = Tab::new("Tables", |workbench, ui, _| workbench.tables_tab(ui));
 
 /// State of this tab.
 #[derive(Default)]
@@ -37,9 +37,24 @@ struct Rows {
     shown: Vec<usize>,
 }
 
+impl Tab for Tables {
+    const TITLE: &'static str = "Tables";
+
+    fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
+        workbench.tables_tab(ui);
+    }
+
+    fn report(workbench: &mut Workbench, report: &Report) {
+        if let Report::Content(Content::Table(number, table, bytes)) = report {
+            let (table, bytes) = (table.clone(), bytes.clone());
+            workbench.tabs.tables.note(*number, table, bytes);
+        }
+    }
+}
+
 impl Tables {
     /// Takes in the content of a table's buffer.
-    pub fn note(&mut self, number: usize, table: Table, bytes: Vec<u8>) {
+    fn note(&mut self, number: usize, table: Table, bytes: Vec<u8>) {
         self.came = Some(Came {
             number,
             table,
@@ -164,8 +179,7 @@ const ABOUT: [(CellKind, &str); 6] = [
 ];
 
 impl Workbench {
-    /// The tab.
-    pub(crate) fn tables_tab(&mut self, ui: &mut Ui) {
+    fn tables_tab(&mut self, ui: &mut Ui) {
         let Some(info) = self.sides[0].info.clone() else {
             ui.weak(self.waiting_text());
             return;
@@ -190,7 +204,7 @@ impl Workbench {
                     }
                 }
             });
-        self.desired.table = Some(self.tabs.tables.chosen);
+        self.desired.read_back = Some(ReadBack::Table(self.tabs.tables.chosen));
         ui.weak(&table.help);
         self.tabs.tables.refresh();
         self.table_bar(ui, &table.title);

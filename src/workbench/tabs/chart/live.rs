@@ -130,7 +130,7 @@ impl Side {
 
 impl super::Chart {
     /// Takes in the time of a frame.
-    pub fn note(&mut self, picture: &PictureReport) {
+    pub(super) fn note(&mut self, picture: &PictureReport) {
         let Some(side) = self
             .live
             .sides
@@ -166,7 +166,7 @@ impl super::Chart {
     }
 
     /// The device was replaced, so requests are sent again.
-    pub fn restarted(&mut self) {
+    pub(super) fn restarted(&mut self) {
         self.live.sides.iter_mut().for_each(|s| s.asked = None);
     }
 
@@ -213,11 +213,11 @@ impl Workbench {
     }
 
     /// Asks for the errors of pictures that have come to rest.
-    pub(crate) fn request_errors(&mut self, ui: &Ui) {
+    pub(super) fn request_errors(&mut self, ui: &Ui) {
         if self.tabs.chart.live.since.0 != self.sent.number {
             self.tabs.chart.live.since = (self.sent.number, Instant::now());
         }
-        if !self.tabs.open.is(super::TAB) || !self.error_pending() {
+        if !self.tabs.shows::<super::Chart>() || !self.error_pending() {
             return;
         }
         let stood = self.tabs.chart.live.since.1.elapsed();
@@ -235,7 +235,7 @@ impl Workbench {
     }
 
     /// Takes in an answer of the error worker.
-    pub(crate) fn error_came(&mut self, result: ErrorResult) {
+    pub(super) fn error_came(&mut self, result: ErrorResult) {
         let side = &mut self.tabs.chart.live.sides[result.side];
         let subject = |j: &ErrorResult| j.result.as_ref().ok().map(|v| v.subject.clone());
         let other =

@@ -16,16 +16,15 @@ use crate::graph::param::Params;
 use crate::lab::parts_of;
 use crate::metrics::Metric;
 use crate::workbench::Workbench;
+use crate::workbench::engine::report::Report;
 use crate::workbench::panel::control::named;
 use choice::{Choice, Chosen};
-use egui::Ui;
+use egui::{TextureId, Ui};
 use folder::Folder;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-
-pub(crate) const TAB: Tab = Tab::new("Chart", |workbench, ui, _| workbench.chart_tab(ui));
 
 /// Most dots that are logged for scripts.
 const MAX_LOGGED: usize = 2000;
@@ -49,9 +48,44 @@ pub struct Chart {
     logged_at: Option<Instant>,
 }
 
+impl Tab for Chart {
+    const TITLE: &'static str = "Chart";
+
+    fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
+        workbench.chart_tab(ui);
+    }
+
+    fn report(workbench: &mut Workbench, report: &Report) {
+        match report {
+            Report::Device(_) => workbench.tabs.chart.restarted(),
+            Report::Picture(picture) => workbench.tabs.chart.note(picture),
+            Report::Error(result) => workbench.error_came(result.clone()),
+            _ => {}
+        }
+    }
+
+    fn poll(workbench: &mut Workbench) {
+        let chart = &mut workbench.tabs.chart;
+        if chart.folder.as_mut().is_some_and(Folder::take) {
+            chart.chosen.forget();
+        }
+        workbench.poll_gather();
+    }
+
+    fn end_frame(workbench: &mut Workbench, ui: &Ui) {
+        workbench.request_errors(ui);
+    }
+
+    fn awaits(workbench: &Workbench) -> bool {
+        let chart = &workbench.tabs.chart;
+        let reading = chart.folder.as_ref().is_some_and(|f| f.data.is_none());
+        workbench.tabs.shows::<Chart>()
+            && (reading || chart.live.awaits() || workbench.error_pending())
+    }
+}
+
 impl Workbench {
-    /// The tab.
-    pub(crate) fn chart_tab(&mut self, ui: &mut Ui) {
+    fn chart_tab(&mut self, ui: &mut Ui) {
         ui.weak("Error against time, from the path-traced reference: points of a sweep, and the shown picture.");
         self.folder_row(ui);
         let data = self
@@ -285,25 +319,6 @@ impl Workbench {
             self.tabs.chart.logged = logged.clone();
             self.event("dots", logged);
         }
-    }
-
-    /// Takes in the messages of the threads of this tab.
-    pub(crate) fn poll_chart(&mut self) {
-        if self.tabs.chart.folder.as_mut().is_some_and(Folder::take) {
-            self.tabs.chart.chosen.forget();
-        }
-        self.poll_gather();
-    }
-
-    /// Whether something is about to come.
-    pub(crate) fn chart_awaits(&self) -> bool {
-        let reading = self
-            .tabs
-            .chart
-            .folder
-            .as_ref()
-            .is_some_and(|f| f.data.is_none());
-        self.tabs.open.is(TAB) && (reading || self.tabs.chart.live.awaits() || self.error_pending())
     }
 }
 

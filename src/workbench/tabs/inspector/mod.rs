@@ -13,22 +13,14 @@ use crate::lab::Texels;
 use crate::vulkan::format::Channels;
 use crate::workbench::background::Wake;
 use crate::workbench::desired::request::InspectTarget;
-use crate::workbench::engine::report::GraphInfo;
+use crate::workbench::engine::report::{GraphInfo, Report};
 use crate::workbench::panel::control::{named, spin};
+use crate::workbench::read_back::{Content, ReadBack};
 use crate::workbench::{INSPECTOR, Workbench};
 use egui::{Color32, DragValue, Slider, TextureId, Ui, Vec2};
 use image::{Channel, Tone};
+use std::sync::Arc;
 use work::{Done, Source, Work};
-
-pub(crate) const TAB: Tab = Tab {
-    middle: |workbench, ui, textures| match workbench.tabs.inspector.fills_viewport() {
-        true => workbench.inspected(ui, textures),
-        false => workbench.picture(ui, textures),
-    },
-    ..Tab::new("Inspect", |workbench, ui, textures| {
-        workbench.inspector_tab(ui, textures)
-    })
-};
 
 /// State of this tab.
 pub struct Inspector {
@@ -66,6 +58,35 @@ impl Default for Inspector {
     }
 }
 
+impl Tab for Inspector {
+    const TITLE: &'static str = "Inspect";
+
+    fn show(workbench: &mut Workbench, ui: &mut Ui, textures: &[TextureId]) {
+        workbench.inspector_tab(ui, textures);
+    }
+
+    fn middle(workbench: &mut Workbench, ui: &mut Ui, textures: &[TextureId]) {
+        match workbench.tabs.inspector.fills_viewport() {
+            true => workbench.inspected(ui, textures),
+            false => workbench.picture(ui, textures),
+        }
+    }
+
+    fn report(workbench: &mut Workbench, report: &Report) {
+        if let Report::Content(Content::Texels(target, texels)) = report {
+            let volume = workbench.is_volume(target);
+            let (inspector, wake) = (&mut workbench.tabs.inspector, &workbench.setup.wake);
+            inspector.note(target, texels.clone(), volume, wake);
+        }
+    }
+
+    fn poll(workbench: &mut Workbench) {
+        if let Some(pixels) = workbench.tabs.inspector.take(&workbench.setup.wake) {
+            workbench.show(pixels);
+        }
+    }
+}
+
 impl Inspector {
     /// Chooses a texture.
     pub fn open(&mut self, side: usize, texture: String) {
@@ -84,14 +105,8 @@ impl Inspector {
         };
     }
 
-    /// Takes in requested texels.
-    /// Texels of a volume are a slice.
-    pub fn note(&mut self, target: InspectTarget, texels: Texels, volume: bool, wake: &Wake) {
-        let texels = if volume {
-            image::upright(texels, target.axis)
-        } else {
-            texels
-        };
+    /// Takes in requested texels. Texels of a volume are a slice.
+    fn note(&mut self, target: &InspectTarget, texels: Arc<Texels>, volume: bool, wake: &Wake) {
         // Results of an earlier choice would only delay the present one.
         if target.texture != self.target.texture || target.side != self.target.side {
             return;
@@ -100,12 +115,12 @@ impl Inspector {
         if fit {
             self.tone = first_tone(&texels, self.tone);
         }
-        self.work
-            .start(Source::New(target, texels), self.tone, fit, wake);
+        let source = Source::New(target.clone(), texels, volume);
+        self.work.start(source, self.tone, fit, wake);
     }
 
     /// New pixels to show, if there are.
-    pub fn take(&mut self, wake: &Wake) -> Option<crate::workbench::NewPixels> {
+    fn take(&mut self, wake: &Wake) -> Option<crate::workbench::NewPixels> {
         let done = self.work.take(wake)?;
         if done.fitted {
             (self.tone.low, self.tone.high) = (done.tone.low, done.tone.high);
@@ -122,7 +137,7 @@ impl Inspector {
     }
 
     /// Whether the viewport shows the inspected texture.
-    pub fn fills_viewport(&self) -> bool {
+    fn fills_viewport(&self) -> bool {
         self.in_viewport && self.shown.is_some() && self.before.is_empty()
     }
 
@@ -157,8 +172,22 @@ fn first_tone(texels: &Texels, tone: Tone) -> Tone {
 }
 
 impl Workbench {
-    /// The tab.
-    pub(crate) fn inspector_tab(&mut self, ui: &mut Ui, textures: &[TextureId]) {
+    /// Shows a texture in the inspector.
+    pub(crate) fn inspect(&mut self, side: usize, texture: String) {
+        self.tabs.inspector.open(side, texture);
+        self.tabs.open::<Inspector>();
+    }
+
+    /// Whether a texture is a volume.
+    fn is_volume(&self, target: &InspectTarget) -> bool {
+        let info = self.sides[target.side.min(1)].info.as_ref();
+        info.is_some_and(|info| {
+            let number = info.graph.texture(&target.texture);
+            number.is_some_and(|n| info.textures.get(n).is_some_and(|t| t.volume))
+        })
+    }
+
+    fn inspector_tab(&mut self, ui: &mut Ui, textures: &[TextureId]) {
         self.view_buttons(ui);
         if self.desired.sides[1].is_none() {
             self.tabs.inspector.target.side = 0;
@@ -177,7 +206,7 @@ impl Workbench {
             ui.weak("The graph has no textures");
             return;
         };
-        self.desired.inspect = Some(self.tabs.inspector.target.clone());
+        self.desired.read_back = Some(ReadBack::Texture(self.tabs.inspector.target.clone()));
         ui.separator();
         egui::ScrollArea::vertical()
             .auto_shrink(false)

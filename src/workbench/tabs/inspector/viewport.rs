@@ -132,11 +132,7 @@ impl Workbench {
             );
         }
         let target = &done.decoded.target;
-        let info = self.sides[target.side.min(1)].info.as_ref();
-        let index = info.and_then(|o| o.graph.texture(&target.texture));
-        let volume = info
-            .zip(index)
-            .is_some_and(|(o, i)| o.textures.get(i).is_some_and(|t| t.volume));
+        let volume = self.is_volume(target);
         let place: Vec<String> = image::texel(target, volume, done.decoded.size[1], x, y)
             .iter()
             .map(ToString::to_string)

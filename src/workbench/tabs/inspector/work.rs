@@ -1,7 +1,7 @@
 //! The work on texels, on a thread of its own and one piece at a time: megapixels must not hold up
 //! the window.
 
-use super::image::{Decoded, Tone};
+use super::image::{Decoded, Tone, upright};
 use super::statistics::{self, BINS, Values};
 use crate::lab::Texels;
 use crate::workbench::background::{Background, Wake};
@@ -10,8 +10,8 @@ use std::sync::Arc;
 
 /// What to work on.
 pub enum Source {
-    /// Texels that came.
-    New(InspectTarget, Texels),
+    /// Texels that came, and whether they are of a volume.
+    New(InspectTarget, Arc<Texels>, bool),
     /// The decoded texels of before, with another tone.
     Again(Arc<Decoded>, Arc<Vec<Values>>),
 }
@@ -71,7 +71,11 @@ impl Work {
 
 fn run(source: Source, tone: Tone, fit: bool) -> Done {
     let (decoded, values) = match source {
-        Source::New(target, texels) => {
+        Source::New(target, texels, volume) => {
+            let mut texels = Arc::unwrap_or_clone(texels);
+            if volume {
+                texels = upright(texels, target.axis);
+            }
             let decoded = Decoded::new(target, texels);
             let values = statistics::values(&decoded);
             (Arc::new(decoded), Arc::new(values))

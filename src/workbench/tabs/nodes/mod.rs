@@ -9,18 +9,11 @@ use crate::workbench::engine::report::GraphInfo;
 use crate::workbench::panel::control::named;
 use crate::workbench::panel::folded;
 use egui::{
-    Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, epaint::CubicBezierShape,
+    Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, TextureId, Ui, Vec2,
+    epaint::CubicBezierShape,
 };
 use layout::{Layout, ROW, TITLE, WIDTH};
 use std::sync::Arc;
-
-pub(crate) const TAB: Tab = Tab {
-    middle: |workbench, ui, textures| match workbench.tabs.nodes.beside {
-        true => workbench.picture(ui, textures),
-        false => workbench.graph_view(ui),
-    },
-    ..Tab::new("Graph", |workbench, ui, _| workbench.graph_tab(ui))
-};
 
 /// State of this tab.
 #[derive(Default)]
@@ -60,6 +53,21 @@ enum Asked {
     Inspect(String),
 }
 
+impl Tab for Nodes {
+    const TITLE: &'static str = "Graph";
+
+    fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
+        workbench.graph_tab(ui);
+    }
+
+    fn middle(workbench: &mut Workbench, ui: &mut Ui, textures: &[TextureId]) {
+        match workbench.tabs.nodes.beside {
+            true => workbench.picture(ui, textures),
+            false => workbench.graph_view(ui),
+        }
+    }
+}
+
 impl Nodes {
     /// The layout of a graph, made once.
     fn layout(&mut self, info: &Arc<GraphInfo>) -> &Layout {
@@ -80,7 +88,7 @@ impl Nodes {
 
 impl Workbench {
     /// The graph in the viewport.
-    pub(crate) fn graph_view(&mut self, ui: &mut Ui) {
+    fn graph_view(&mut self, ui: &mut Ui) {
         let side = self
             .tabs
             .nodes
@@ -150,16 +158,13 @@ impl Workbench {
         self.tabs.nodes.seen = seen;
         match asked {
             Some(Asked::Choose(name)) => self.tabs.nodes.chosen = Some(name),
-            Some(Asked::Inspect(texture)) => {
-                self.tabs.inspector.open(side, texture);
-                self.tabs.open = crate::workbench::tabs::inspector::TAB;
-            }
+            Some(Asked::Inspect(texture)) => self.inspect(side, texture),
             None => {}
         }
     }
 
     /// Details of the chosen pass, and actions on it.
-    pub(crate) fn graph_tab(&mut self, ui: &mut Ui) {
+    fn graph_tab(&mut self, ui: &mut Ui) {
         let both = self.desired.sides[1].is_some();
         if both {
             ui.horizontal(|ui| {
@@ -402,8 +407,7 @@ impl Workbench {
                     )
                     .clicked()
                 {
-                    self.tabs.inspector.open(side, resource.clone());
-                    self.tabs.open = crate::workbench::tabs::inspector::TAB;
+                    self.inspect(side, resource.clone());
                 }
             }
         }

@@ -9,14 +9,12 @@ use crate::files::FileError;
 use crate::graph::run::Execution;
 use crate::results::timers;
 use crate::workbench::Workbench;
-use crate::workbench::engine::report::{GraphInfo, PassUses, PictureReport};
-use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Ui, Vec2};
+use crate::workbench::engine::report::{GraphInfo, PassUses, PictureReport, Report};
+use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, TextureId, Ui, Vec2};
 use history::{Frame, History, KEPT, OUTSIDE, Row};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-
-pub(crate) const TAB: Tab = Tab::new("Time", |workbench, ui, _| workbench.times_tab(ui));
 
 /// Interval between updates of a table.
 const TABLE_AGE: Duration = Duration::from_millis(250);
@@ -56,9 +54,27 @@ pub struct Means {
     pub total: f64,
 }
 
+impl Tab for Times {
+    const TITLE: &'static str = "Time";
+
+    fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
+        workbench.times_tab(ui);
+    }
+
+    fn report(workbench: &mut Workbench, report: &Report) {
+        let times = &mut workbench.tabs.times;
+        match report {
+            Report::Built { side, info, .. } => times.built(*side, info),
+            Report::Restarted => times.restarted(),
+            Report::Picture(picture) => times.note(picture),
+            _ => {}
+        }
+    }
+}
+
 impl Times {
     /// Takes in the times of a frame.
-    pub fn note(&mut self, picture: &PictureReport) {
+    fn note(&mut self, picture: &PictureReport) {
         // The passes of a preview are those of another graph.
         if let Some(side) = self
             .sides
@@ -70,7 +86,7 @@ impl Times {
     }
 
     /// A side runs a new session, so its earlier times are dropped.
-    pub fn built(&mut self, side: usize, info: &GraphInfo) {
+    fn built(&mut self, side: usize, info: &GraphInfo) {
         let pass = |i: &usize| {
             info.graph
                 .passes
@@ -88,7 +104,7 @@ impl Times {
     }
 
     /// A and B restart together.
-    pub fn restarted(&mut self) {
+    fn restarted(&mut self) {
         for side in &mut self.sides {
             *side = History::new(std::mem::take(&mut side.passes));
         }
@@ -150,8 +166,7 @@ impl Times {
 }
 
 impl Workbench {
-    /// The tab.
-    pub(crate) fn times_tab(&mut self, ui: &mut Ui) {
+    fn times_tab(&mut self, ui: &mut Ui) {
         let both = self.desired.sides[1].is_some();
         self.tabs.times.refresh(both);
         egui::ScrollArea::vertical()
@@ -295,8 +310,7 @@ impl Workbench {
             self.messages.status = format!("{name} writes no texture");
             return;
         };
-        self.tabs.inspector.open(side, texture);
-        self.tabs.open = crate::workbench::tabs::inspector::TAB;
+        self.inspect(side, texture);
     }
 }
 
