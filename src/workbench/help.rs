@@ -27,101 +27,84 @@ pub enum Action {
 
 const NONE: Modifiers = Modifiers::NONE;
 
+const CTRL: Modifiers = Modifiers::COMMAND;
+const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+type Shortcut = (Action, KeyboardShortcut, &'static str);
+
+const fn key(action: Action, modifiers: Modifiers, key: Key, about: &'static str) -> Shortcut {
+    (action, KeyboardShortcut::new(modifiers, key), about)
+}
+
 /// In the order in which they are explained.
-const KEYS: [(Action, KeyboardShortcut, &str); 19] = [
-    (
-        Action::Help,
-        KeyboardShortcut::new(NONE, Key::F1),
-        "these keys",
-    ),
-    (
+const KEYS: [Shortcut; 19] = [
+    key(Action::Help, NONE, Key::F1, "these keys"),
+    key(
         Action::Undo,
-        KeyboardShortcut::new(Modifiers::COMMAND, Key::Z),
+        CTRL,
+        Key::Z,
         "undo the last edit: parameters, passes, lights, scene, opened file",
     ),
-    (
-        Action::Redo,
-        KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z),
-        "redo",
-    ),
-    (
-        Action::Redo,
-        KeyboardShortcut::new(Modifiers::COMMAND, Key::Y),
-        "redo",
-    ),
-    (
+    key(Action::Redo, CTRL_SHIFT, Key::Z, "redo"),
+    key(Action::Redo, CTRL, Key::Y, "redo"),
+    key(
         Action::Open,
-        KeyboardShortcut::new(Modifiers::COMMAND, Key::O),
+        CTRL,
+        Key::O,
         "open a scene, a model or an experiment",
     ),
-    (
-        Action::Find,
-        KeyboardShortcut::new(Modifiers::COMMAND, Key::F),
-        "search the parameters",
-    ),
-    (
+    key(Action::Find, CTRL, Key::F, "search the parameters"),
+    key(
         Action::Reload,
-        KeyboardShortcut::new(NONE, Key::F5),
+        NONE,
+        Key::F5,
         "read graphs, shaders and the scene again",
     ),
-    (
-        Action::Reload,
-        KeyboardShortcut::new(Modifiers::COMMAND, Key::R),
-        "the same",
-    ),
-    (
+    key(Action::Reload, CTRL, Key::R, "the same"),
+    key(
         Action::Save,
-        KeyboardShortcut::new(Modifiers::COMMAND, Key::S),
+        CTRL,
+        Key::S,
         "save the experiment, under its name on the Save tab",
     ),
-    (
+    key(
         Action::Capture,
-        KeyboardShortcut::new(NONE, Key::F12),
+        NONE,
+        Key::F12,
         "capture the picture to captures/",
     ),
-    (
-        Action::Panels,
-        KeyboardShortcut::new(NONE, Key::H),
-        "hide and show the panels",
-    ),
-    (
-        Action::FullScreen,
-        KeyboardShortcut::new(NONE, Key::F11),
-        "full screen",
-    ),
-    (
+    key(Action::Panels, NONE, Key::H, "hide and show the panels"),
+    key(Action::FullScreen, NONE, Key::F11, "full screen"),
+    key(
         Action::WholePicture,
-        KeyboardShortcut::new(NONE, Key::Home),
+        NONE,
+        Key::Home,
         "the whole picture again, after zooming",
     ),
-    (
+    key(
         Action::Timers,
-        KeyboardShortcut::new(NONE, Key::T),
+        NONE,
+        Key::T,
         "times on the picture: stages, passes, none",
     ),
-    (
+    key(
         Action::Flip,
-        KeyboardShortcut::new(NONE, Key::X),
+        NONE,
+        Key::X,
         "A or B, when comparing by flipping",
     ),
-    (
+    key(
         Action::Unpoint,
-        KeyboardShortcut::new(NONE, Key::Escape),
+        NONE,
+        Key::Escape,
         "forget the point clicked on",
     ),
-    (
-        Action::Play,
-        KeyboardShortcut::new(NONE, Key::Space),
-        "play and pause time",
-    ),
-    (
-        Action::Step,
-        KeyboardShortcut::new(NONE, Key::Period),
-        "one frame on",
-    ),
-    (
+    key(Action::Play, NONE, Key::Space, "play and pause time"),
+    key(Action::Step, NONE, Key::Period, "one frame on"),
+    key(
         Action::RenderDoc,
-        KeyboardShortcut::new(NONE, Key::F10),
+        NONE,
+        Key::F10,
         "capture a frame with RenderDoc",
     ),
 ];

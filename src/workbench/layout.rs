@@ -55,11 +55,8 @@ impl Workbench {
             self.panel.side = 0;
         }
         let number = self.panel.side;
-        let info = self.sides[number]
-            .info
-            .clone()
-            .or(self.sides[0].info.clone());
-        let Some(info) = info else {
+        let info = self.sides[number].info.as_ref();
+        let Some(info) = info.or(self.sides[0].info.as_ref()).cloned() else {
             ui.weak(self.waiting_text());
             return;
         };
@@ -82,13 +79,9 @@ impl Workbench {
             ui.spacing_mut().item_spacing.x = 1.0;
             ui.spacing_mut().button_padding.x = 3.0;
             for tab in TABS {
-                if ui
-                    .selectable_label(
-                        self.tabs.open.title == tab.title,
-                        egui::RichText::new(tab.title).size(12.0),
-                    )
-                    .clicked()
-                {
+                let title = egui::RichText::new(tab.title).size(12.0);
+                let is_open = self.tabs.open.title == tab.title;
+                if ui.selectable_label(is_open, title).clicked() {
                     self.tabs.open = tab;
                 }
             }

@@ -1,9 +1,9 @@
 //! Errors with the place and the source line, over the picture's foot; they go when they are
 //! mended.
 
-use crate::diagnostics::{Diagnostic, Severity};
+use crate::diagnostics::{Diagnostic, Place, Severity};
 use crate::workbench::engine::Order;
-use crate::workbench::{Workbench, editor};
+use crate::workbench::{Side, Workbench, editor};
 use egui::{Align2, Color32, Rect, RichText, Ui};
 
 /// The end of a message after which the device has to be restarted.
@@ -48,61 +48,13 @@ impl Workbench {
     }
 
     fn message_rows(&mut self, ui: &mut Ui) {
-        let mut open = None;
-        for (side, name) in self.sides.iter().zip(["A", "B"]) {
-            if !side.errors.is_empty() {
-                let count = side.errors.len();
-                ui.horizontal_wrapped(|ui| {
-                    ui.colored_label(
-                        RED,
-                        format!("{name} shows the last good picture: {count} to mend in the files"),
-                    );
-                    if ui
-                        .small_button("copy")
-                        .on_hover_text("All of these messages")
-                        .clicked()
-                    {
-                        let texts: Vec<String> =
-                            side.errors.iter().map(ToString::to_string).collect();
-                        ui.ctx().copy_text(texts.join("\n"));
-                    }
-                });
-            }
-            for error in &side.errors {
-                if diagnostic(ui, error) {
-                    open = Some((error.place.file.clone(), error.place.line));
-                }
-            }
-            for check in &side.checks {
-                ui.colored_label(AMBER, check);
-            }
-        }
-        if let Some((file, line)) = open {
-            let file = if file.is_absolute() || file.exists() {
-                file
-            } else {
-                self.setup.home.root.join(file)
-            };
-            self.messages.status = editor::open(&file, line);
-            self.event(
-                "editor",
-                serde_json::json!({ "text": self.messages.status }),
-            );
+        let sides = self.sides.iter().zip(["A", "B"]);
+        let open = sides.filter_map(|(side, name)| side_rows(ui, side, name));
+        if let Some(place) = open.last() {
+            self.open_editor(&place);
         }
         if self.scene.warned {
-            ui.horizontal_wrapped(|ui| {
-                let warnings = self.scene_warnings();
-                let first = warnings.first().cloned().unwrap_or_default();
-                let more = match warnings.len() {
-                    0 | 1 => String::new(),
-                    n => format!(" (and {} more on the Scene tab)", n - 1),
-                };
-                ui.colored_label(AMBER, format!("scene: {first}{more}"));
-                self.scene.warned = !ui
-                    .small_button("dismiss")
-                    .on_hover_text("It stays on the Scene tab")
-                    .clicked();
-            });
+            self.scene_row(ui);
         }
         let Some(trouble) = self.messages.trouble.clone() else {
             return;
@@ -119,6 +71,57 @@ impl Workbench {
             }
         });
     }
+
+    fn open_editor(&mut self, place: &Place) {
+        let mut file = place.file.clone();
+        if !file.is_absolute() && !file.exists() {
+            file = self.setup.home.root.join(file);
+        }
+        let text = editor::open(&file, place.line);
+        self.event("editor", serde_json::json!({ "text": text }));
+        self.messages.status = text;
+    }
+
+    fn scene_row(&mut self, ui: &mut Ui) {
+        let warnings = self.scene_warnings();
+        let first = warnings.first().cloned().unwrap_or_default();
+        let more = match warnings.len() {
+            0 | 1 => String::new(),
+            n => format!(" (and {} more on the Scene tab)", n - 1),
+        };
+        ui.horizontal_wrapped(|ui| {
+            ui.colored_label(AMBER, format!("scene: {first}{more}"));
+            let dismiss = ui.small_button("dismiss");
+            let dismiss = dismiss.on_hover_text("It stays on the Scene tab");
+            self.scene.warned = !dismiss.clicked();
+        });
+    }
+}
+
+/// The messages of a side. Returns the place that was clicked on.
+fn side_rows(ui: &mut Ui, side: &Side, name: &str) -> Option<Place> {
+    if !side.errors.is_empty() {
+        let count = side.errors.len();
+        let text = format!("{name} shows the last good picture: {count} to mend in the files");
+        ui.horizontal_wrapped(|ui| {
+            ui.colored_label(RED, text);
+            let copy = ui.small_button("copy");
+            if copy.on_hover_text("All of these messages").clicked() {
+                let texts: Vec<String> = side.errors.iter().map(ToString::to_string).collect();
+                ui.ctx().copy_text(texts.join("\n"));
+            }
+        });
+    }
+    let mut open = None;
+    for error in &side.errors {
+        if diagnostic(ui, error) {
+            open = Some(error.place.clone());
+        }
+    }
+    for check in &side.checks {
+        ui.colored_label(AMBER, check);
+    }
+    open
 }
 
 pub(super) const RED: Color32 = Color32::from_rgb(255, 110, 90);

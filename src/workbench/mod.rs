@@ -163,6 +163,16 @@ struct Sent {
     at: Instant,
 }
 
+impl Default for Sent {
+    fn default() -> Sent {
+        Sent {
+            request: RenderRequest::default(),
+            number: 0,
+            at: Instant::now(),
+        }
+    }
+}
+
 /// The loaded scene, and the loading of another.
 struct OpenScene {
     loaded: Option<Arc<Scene>>,
@@ -179,6 +189,21 @@ struct OpenScene {
     /// Name of the scene being loaded, and the completed fraction.
     loading: Option<(String, f32)>,
     models: models::Models,
+}
+
+impl OpenScene {
+    fn new(root: &Path) -> OpenScene {
+        OpenScene {
+            loaded: None,
+            source: None,
+            before: None,
+            missing: false,
+            warned: false,
+            diagonal: 1.0,
+            loading: None,
+            models: models::Models::new(root),
+        }
+    }
 }
 
 /// The experiment that is edited.
@@ -238,24 +263,11 @@ impl Workbench {
         Ok(Workbench {
             engine,
             watch,
-            sent: Sent {
-                request: RenderRequest::default(),
-                number: 0,
-                at: Instant::now(),
-            },
+            sent: Sent::default(),
             desired,
             sides: Default::default(),
             alone: None,
-            scene: OpenScene {
-                loaded: None,
-                source: None,
-                before: None,
-                missing: false,
-                warned: false,
-                diagonal: 1.0,
-                loading: None,
-                models: models::Models::new(&root),
-            },
+            scene: OpenScene::new(&root),
             experiment: OpenExperiment {
                 name: experiment.name.clone(),
                 file: Some(experiment),

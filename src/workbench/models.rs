@@ -49,32 +49,23 @@ impl Models {
         });
         if !found.is_empty() {
             ui.weak("models in CONELAB_SCENES");
-            egui::ScrollArea::vertical()
-                .max_height(200.0)
-                .show(ui, |ui| {
-                    for (path, bytes) in found {
-                        let name = path
-                            .file_name()
-                            .map_or(String::new(), |n| n.to_string_lossy().into_owned());
-                        ui.horizontal(|ui| {
-                            if ui
-                                .button(name)
-                                .on_hover_text(path.display().to_string())
-                                .clicked()
-                            {
-                                chosen = Some(path.to_string_lossy().into_owned());
-                            }
-                            ui.weak(format!("{:.1} MB", *bytes as f64 / 1e6))
-                                .on_hover_text("The file alone, without its pictures");
-                        });
-                    }
-                });
+            let list = egui::ScrollArea::vertical().max_height(200.0);
+            list.show(ui, |ui| {
+                for (path, bytes) in found {
+                    let name = path.file_name().unwrap_or_default().to_string_lossy();
+                    let about = path.display().to_string();
+                    ui.horizontal(|ui| {
+                        if ui.button(name).on_hover_text(&about).clicked() {
+                            chosen = Some(about);
+                        }
+                        ui.weak(format!("{:.1} MB", *bytes as f64 / 1e6))
+                            .on_hover_text("The file alone, without its pictures");
+                    });
+                }
+            });
         }
-        if ui
-            .button("open file...")
-            .on_hover_text("A scene, a model or an experiment; they can be dropped too")
-            .clicked()
-        {
+        let about = "A scene, a model or an experiment; they can be dropped too";
+        if ui.button("open file...").on_hover_text(about).clicked() {
             self.ask();
             ui.close();
         }

@@ -6,7 +6,7 @@ use crate::lab::{Viewpoint, viewpoint_of};
 use crate::scene::Scene;
 use crate::workbench::desired::save;
 use crate::workbench::engine::Engine;
-use crate::workbench::engine::report::{PictureReport, Report};
+use crate::workbench::engine::report::{BuiltReport, PictureReport, Report};
 use crate::workbench::picture::compare::MODES;
 use crate::workbench::tabs::TABS;
 use crate::workbench::{COMPARISON, NewPixels, Workbench, events};
@@ -96,29 +96,7 @@ impl Workbench {
                 self.device = Some(device);
                 self.messages.trouble = None;
             }
-            Report::Built {
-                side,
-                info,
-                change,
-                ms,
-                revision,
-                objects,
-            } => {
-                let Change {
-                    kept,
-                    built,
-                    resized,
-                } = change;
-                self.messages.status =
-                    format!("kept {kept}, rebuilt {built}, resized {resized}, {ms:.0} ms");
-                self.event(
-                    "built",
-                    json!({ "side": side, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
-                        "revision": revision, "objects": objects }),
-                );
-                self.mended(side);
-                self.sides[side].info = Some(info);
-            }
+            Report::Built(built) => self.built(built),
             Report::Failed {
                 side,
                 diagnostics,
@@ -135,40 +113,11 @@ impl Workbench {
                 self.mended(side);
             }
             Report::Picture(picture) => self.picture_came(picture),
-            Report::Pixels { side, frame, bytes } => {
-                let Some(picture) = self.sides[side]
-                    .picture
-                    .as_mut()
-                    .filter(|p| p.frame == frame)
-                else {
-                    return;
-                };
-                picture.bytes = Some(bytes.clone());
-                // A window that did not keep up has none of this frame.
-                if picture.shared.is_none() {
-                    let size = picture.size;
-                    self.show(NewPixels {
-                        picture: side,
-                        size,
-                        bytes: Some(bytes),
-                        shared: None,
-                    });
-                }
-            }
+            Report::Pixels { side, frame, bytes } => self.pixels_came(side, frame, bytes),
             Report::Loading(what, part) => self.scene.loading = Some((what, part)),
             Report::Reads(files) => self.watch.scene(&files),
             Report::Loaded(scene) => self.loaded(scene),
-            Report::LoadFailed(why) => {
-                self.scene.loading = None;
-                self.event(
-                    "load failed",
-                    json!({ "why": why, "scene": self.desired.scene }),
-                );
-                self.scene.missing = self.scene.loaded.is_none();
-                self.messages.trouble = Some(why);
-                self.return_to_scene();
-                self.send_request();
-            }
+            Report::LoadFailed(why) => self.load_failed(why),
             Report::Checks(side, failed) => self.sides[side].checks = failed,
             Report::DeviceFailed(text) => {
                 self.event("device failed", json!({ "text": text }));
@@ -182,6 +131,54 @@ impl Workbench {
             // For tabs alone.
             Report::Restarted | Report::Content(_) | Report::Captured(_) | Report::Error(_) => {}
         }
+    }
+
+    fn built(&mut self, built: BuiltReport) {
+        let Change {
+            kept,
+            built: rebuilt,
+            resized,
+        } = built.change;
+        let (side, ms) = (built.side, built.ms);
+        self.messages.status =
+            format!("kept {kept}, rebuilt {rebuilt}, resized {resized}, {ms:.0} ms");
+        self.event(
+            "built",
+            json!({ "side": side, "kept": kept, "rebuilt": rebuilt, "resized": resized, "build_ms": ms,
+                "revision": built.revision, "objects": built.objects }),
+        );
+        self.mended(side);
+        self.sides[side].info = Some(built.info);
+    }
+
+    /// Takes in the pixels of a frame. A window that did not keep up has none of that frame.
+    fn pixels_came(&mut self, side: usize, frame: u64, bytes: Arc<Vec<u8>>) {
+        let picture = self.sides[side].picture.as_mut();
+        let Some(picture) = picture.filter(|p| p.frame == frame) else {
+            return;
+        };
+        picture.bytes = Some(bytes.clone());
+        if picture.shared.is_none() {
+            let size = picture.size;
+            self.show(NewPixels {
+                picture: side,
+                size,
+                bytes: Some(bytes),
+                shared: None,
+            });
+        }
+    }
+
+    fn load_failed(&mut self, why: String) {
+        self.scene.loading = None;
+        self.event(
+            "load failed",
+            json!({ "why": why, "scene": self.desired.scene }),
+        );
+        self.scene.missing = self.scene.loaded.is_none();
+        self.messages.trouble = Some(why);
+        self.return_to_scene();
+        self.send_request();
     }
 
     /// Has the host show these in place of those that wait for it.

@@ -34,8 +34,7 @@ impl State {
     /// unless an experiment was opened.
     fn same(&self, other: &State, opened: bool) -> bool {
         let (a, b) = (&self.desired, &other.desired);
-        let edit = a.sides == b.sides
-            && (&a.scene, &a.environment, &a.lights) == (&b.scene, &b.environment, &b.lights);
+        let edit = a.sides == b.sides && (a.source(), &a.lights) == (b.source(), &b.lights);
         let view =
             a.camera == b.camera && self.fixed_size == other.fixed_size && self.name == other.name;
         edit && (view || !opened)
@@ -92,43 +91,25 @@ impl History {
 impl History {
     /// Forgets a scene that could not be loaded: its states take the scene of `before`, to which
     /// the session returns.
-    fn forget_scene(&mut self, failed: (&str, &str), before: &State) {
-        let settled = self.settled.iter_mut();
-        let states = self
-            .past
-            .iter_mut()
-            .chain(&mut self.future)
-            .map(|s| &mut s.0)
-            .chain(settled);
-        for state in states {
-            if (
-                state.desired.scene.as_str(),
-                state.desired.environment.as_str(),
-            ) == failed
-            {
-                state.take_scene(before);
+    fn forget_scene(&mut self, failed: &RenderRequest, before: &State) {
+        let steps = self.past.iter_mut().chain(&mut self.future);
+        for state in steps.map(|s| &mut s.0).chain(&mut self.settled) {
+            let desired = &mut state.desired;
+            if desired.source() == failed.source() {
+                let before = &before.desired;
+                desired.scene.clone_from(&before.scene);
+                desired.environment.clone_from(&before.environment);
+                desired.lights.clone_from(&before.lights);
+                desired.camera = before.camera;
             }
         }
         self.settled = Some(before.clone());
         while self
             .past
-            .last()
-            .is_some_and(|(last, opened)| last.same(before, *opened))
-        {
-            self.past.pop();
-        }
+            .pop_if(|(last, opened)| last.same(before, *opened))
+            .is_some()
+        {}
         self.opened = false;
-    }
-}
-
-impl State {
-    fn take_scene(&mut self, other: &State) {
-        self.desired.scene.clone_from(&other.desired.scene);
-        self.desired
-            .environment
-            .clone_from(&other.desired.environment);
-        self.desired.lights.clone_from(&other.desired.lights);
-        self.desired.camera = other.desired.camera;
     }
 }
 
@@ -139,39 +120,34 @@ impl Workbench {
         let Some(before) = self.scene.before.take() else {
             return;
         };
-        let failed = (self.desired.scene.clone(), self.desired.environment.clone());
-        let (revision, scene_revision) = (self.desired.revision, self.desired.scene_revision);
-        let (clock, continuous, execution) = (
-            self.desired.clock,
-            self.desired.continuous,
-            self.desired.execution,
-        );
-        self.desired = before.desired.clone();
-        (self.desired.revision, self.desired.scene_revision) = (revision, scene_revision);
-        (
-            self.desired.clock,
-            self.desired.continuous,
-            self.desired.execution,
-        ) = (clock, continuous, execution);
+        let now = std::mem::take(&mut self.desired);
+        self.desired = RenderRequest {
+            revision: now.revision,
+            scene_revision: now.scene_revision,
+            clock: now.clock,
+            continuous: now.continuous,
+            execution: now.execution,
+            ..before.desired.clone()
+        };
         self.experiment.name.clone_from(&before.name);
         self.layout.fixed_size = before.fixed_size;
         (self.experiment.file, self.undo.returning) = (None, false);
-        self.undo
-            .history
-            .forget_scene((&failed.0, &failed.1), &before);
+        self.undo.history.forget_scene(&now, &before);
     }
 
     pub(crate) fn state(&self) -> State {
-        let time = self.sides[0]
-            .picture
-            .as_ref()
-            .map_or(self.desired.clock.at, |p| p.time);
         State {
             desired: self.desired.clone(),
             name: self.experiment.name.clone(),
             fixed_size: self.layout.fixed_size,
-            time,
+            time: self.shown_time(),
         }
+    }
+
+    /// The scene's time in the shown picture, s.
+    pub(crate) fn shown_time(&self) -> f64 {
+        let picture = self.sides[0].picture.as_ref();
+        picture.map_or(self.desired.clock.at, |p| p.time)
     }
 
     /// Remembers what there is now; see [`History::note`].
@@ -183,21 +159,11 @@ impl Workbench {
     /// Goes back, or forth, by one edit.
     pub(crate) fn go(&mut self, back: bool) {
         let now = self.state();
-        let Some((
-            State {
-                desired,
-                name,
-                fixed_size,
-                time,
-            },
-            opened,
-        )) = self.undo.history.step(now, back)
-        else {
+        let Some((state, opened)) = self.undo.history.step(now, back) else {
             return;
         };
-        if (&self.desired.scene, &self.desired.environment)
-            != (&desired.scene, &desired.environment)
-        {
+        let desired = state.desired;
+        if self.desired.source() != desired.source() {
             self.open_scene(&desired.scene);
             self.desired.environment = desired.environment;
             // It is seen as it was, not as an experiment would have it.
@@ -209,13 +175,10 @@ impl Workbench {
         if opened {
             self.desired.camera = desired.camera;
             self.desired.size = desired.size;
-            self.desired.clock.at = time;
+            self.desired.clock.at = state.time;
             self.desired.clock.jumps += 1;
-            (
-                self.experiment.name,
-                self.layout.fixed_size,
-                self.layout.resize_since,
-            ) = (name, fixed_size, None);
+            self.experiment.name = state.name;
+            (self.layout.fixed_size, self.layout.resize_since) = (state.fixed_size, None);
             self.experiment.file = None;
         }
         self.undo.history.settled = Some(self.state());

@@ -163,6 +163,11 @@ pub struct RenderRequest {
 }
 
 impl RenderRequest {
+    /// The scene and the picture of its sky.
+    pub fn source(&self) -> (&str, &str) {
+        (&self.scene, &self.environment)
+    }
+
     /// The experiment of a side, as a session is made from it.
     pub fn experiment(&self, side: &SideRequest) -> Experiment {
         let mut sources = Sources::default();

@@ -65,43 +65,30 @@ impl Workbench {
             return Default::default();
         };
         let mut words = [Vec::new(), Vec::new()];
-        for (words, (own, other)) in words.iter_mut().zip([(&a.off, &b.off), (&b.off, &a.off)]) {
-            let without: Vec<&str> = own
-                .iter()
-                .filter(|o| !other.contains(o))
-                .map(String::as_str)
-                .collect();
-            let with: Vec<&str> = other
-                .iter()
-                .filter(|o| !own.contains(o))
-                .map(String::as_str)
-                .collect();
-            words.extend((!without.is_empty()).then(|| format!("without {}", without.join(", "))));
-            words.extend((!with.is_empty()).then(|| format!("with {}", with.join(", "))));
+        let off = [(&a.off, &b.off), (&b.off, &a.off)];
+        for (words, (own, other)) in words.iter_mut().zip(off) {
+            for (with, in_one, in_two) in [("without", own, other), ("with", other, own)] {
+                let passes = in_one.iter().filter(|pass| !in_two.contains(pass));
+                let passes: Vec<&str> = passes.map(String::as_str).collect();
+                words.extend((!passes.is_empty()).then(|| format!("{with} {}", passes.join(", "))));
+            }
         }
         let mut seen: Vec<&str> = Vec::new();
         let mut more = false;
         for (name, _) in a.params.iter().chain(&b.params) {
-            let Some(param) = info
-                .graph
-                .params
-                .param(name)
-                .filter(|_| !seen.contains(&name.as_str()))
-            else {
+            let Some(param) = info.graph.params.param(name) else {
                 continue;
             };
-            seen.push(name);
             let values = [a, b].map(|side| edit::value(side, param));
-            if values[0] == values[1] {
+            if seen.contains(&name.as_str()) || values[0] == values[1] {
                 continue;
             }
+            seen.push(name);
             more |= words[0].len() >= NAMED;
-            for (words, value) in words
-                .iter_mut()
-                .zip(&values)
-                .filter(|(words, _)| words.len() < NAMED)
-            {
-                words.push(format!("{name} {value}"));
+            for (words, value) in words.iter_mut().zip(&values) {
+                if words.len() < NAMED {
+                    words.push(format!("{name} {value}"));
+                }
             }
         }
         words.map(|w| format!("{}{}", w.join(", "), if more { ", …" } else { "" }))

@@ -68,26 +68,11 @@ impl Run<'_> {
 
     fn frame(&mut self, number: usize, rest: bool) -> Result<(), LabError> {
         let software = self.lab.gpu.info.kind == "cpu";
+        self.pose(number);
         let side = &mut self.sides[number];
         let Some(session) = &mut side.session else {
             return Ok(());
         };
-        if let Some(camera) = &self.desired.camera {
-            session.set_camera(camera);
-        }
-        if let Some(path) = &self.desired.path {
-            session.place_camera(&path.at(self.clock.now));
-        }
-        if std::mem::take(&mut side.lights) {
-            let lights = self
-                .desired
-                .lights
-                .clone()
-                .unwrap_or_else(|| LightState::of(&session.scene));
-            lights.light(session);
-        }
-        session.set_time(self.clock.now);
-        session.set_execution(self.desired.execution);
         side.frame += 1;
         side.submitted.push_back(Submitted {
             request: side.answered,
@@ -129,6 +114,27 @@ impl Run<'_> {
         self.report_frames(number, finished);
         self.read_back(number)?;
         self.check(number)
+    }
+
+    /// Gives a session the camera, the lights and the time of its next frame.
+    fn pose(&mut self, number: usize) {
+        let side = &mut self.sides[number];
+        let Some(session) = &mut side.session else {
+            return;
+        };
+        if let Some(camera) = &self.desired.camera {
+            session.set_camera(camera);
+        }
+        if let Some(path) = &self.desired.path {
+            session.place_camera(&path.at(self.clock.now));
+        }
+        if std::mem::take(&mut side.lights) {
+            let lights = self.desired.lights.clone();
+            let lights = lights.unwrap_or_else(|| LightState::of(&session.scene));
+            lights.light(session);
+        }
+        session.set_time(self.clock.now);
+        session.set_execution(self.desired.execution);
     }
 
     pub(super) fn report_frames(&mut self, number: usize, finished: Vec<FrameTimes>) {

@@ -33,7 +33,7 @@ use pulse::Pulse;
 use report::{DeviceReport, Report};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Orders of the window to the engine, in addition to the desired state.
@@ -144,10 +144,9 @@ impl Engine {
     /// Works towards this from now on. Requests are numbered in their order: what answers one says
     /// its number.
     pub fn request(&self, number: u64, request: RenderRequest) {
-        *self
-            .desired
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner) = (number, request);
+        let mut desired = self.desired.lock().unwrap_or_else(PoisonError::into_inner);
+        *desired = (number, request);
+        drop(desired);
         self.order(Order::Reconcile);
     }
 
@@ -248,7 +247,7 @@ struct Run<'a> {
     loaded_key: Option<(String, String, u64)>,
     scene_number: u64,
     loading: Option<Arc<AtomicBool>>,
-    loaded: Sender<Result<Arc<Scene>, SceneError>>,
+    loaded: Sender<SceneResult>,
     clock: Clocked,
     turn: usize,
     /// Whether A and B restart together once both show their requests.
@@ -341,80 +340,24 @@ fn session(
     let results = out.clone();
     let worker =
         std::thread::spawn(move || error_worker::run(&error_inbox, &|report| results.send(report)));
-    let mut run = Run {
-        lab,
-        out,
-        desired: RenderRequest::default(),
-        number: 0,
-        sides: Default::default(),
-        jobs,
-        error_requests,
-        scene: None,
-        scene_key: None,
-        loaded_key: None,
-        scene_number: 0,
-        loading: None,
-        loaded: loaded_out,
-        clock: Clocked {
-            now: 0.0,
-            last: Instant::now(),
-            steps: 0,
-            jumps: 0,
-        },
-        turn: 0,
-        restarts: false,
-        renderdoc: false,
-        last_read_back: Instant::now(),
-        last_rendered: Instant::now(),
-        waited: false,
+    let inboxes = Inboxes {
+        orders: inbox,
+        builds: done,
+        scenes: loaded,
     };
-    run.change(
-        desired
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner)
-            .clone(),
-    )?;
+    let mut run = Run::new(lab, out, jobs, error_requests, loaded_out);
+    run.change(latest(desired))?;
     let result = loop {
-        let (idle, awaits) = (!run.busy(), run.awaits_build());
-        let mut orders: Vec<Order> = Vec::new();
-        let mut builds: Vec<Done> = Vec::new();
-        let mut scenes = Vec::new();
-        let mut rests = false;
-        if idle {
-            pulse.rest();
-            let wait = if run.owes_pixels() {
-                crossbeam_channel::after(REST)
-            } else {
-                crossbeam_channel::never()
-            };
-            select! {
-                recv(inbox) -> order => orders.push(order.unwrap_or(Order::Quit)),
-                recv(done) -> d => builds.extend(d),
-                recv(loaded) -> l => scenes.extend(l),
-                recv(wait) -> _ => rests = true,
-            }
-        } else if awaits {
-            select! {
-                recv(inbox) -> order => orders.push(order.unwrap_or(Order::Quit)),
-                recv(done) -> d => builds.extend(d),
-                default(Duration::from_millis(10)) => {}
-            }
-        }
-        pulse.beat();
-        orders.extend(inbox.try_iter());
-        builds.extend(done.try_iter());
-        scenes.extend(loaded.try_iter());
-        if orders.iter().any(|o| matches!(o, Order::Quit)) {
+        let inputs = inboxes.take(&run, pulse);
+        if inputs.orders.iter().any(|o| matches!(o, Order::Quit)) {
             break Ok(End::Quit);
         }
-        if orders.iter().any(|o| matches!(o, Order::Restart)) {
+        if inputs.orders.iter().any(|o| matches!(o, Order::Restart)) {
             break Ok(End::Restart);
         }
-        let step = match rests {
+        let step = match inputs.rests {
             true => run.pay_pixels(),
-            false => run
-                .handle(orders, builds, scenes, desired)
-                .and_then(|()| run.render()),
+            false => run.handle(inputs, desired).and_then(|()| run.render()),
         };
         if let Err(e) = step {
             break Err(e);
@@ -427,10 +370,110 @@ fn session(
     // Running builds hold the device, and their results are dropped. They keep a device that hangs.
     while !(builder.is_finished() && worker.is_finished() || gpu.is_hung()) {
         pulse.beat();
-        let _ = done.recv_timeout(Duration::from_millis(10));
+        let _ = inboxes.builds.recv_timeout(Duration::from_millis(10));
     }
     messages.extend(gpu.messages());
     result
+}
+
+/// The latest request.
+fn latest(desired: &Mutex<Numbered>) -> Numbered {
+    let desired = desired.lock();
+    desired.unwrap_or_else(PoisonError::into_inner).clone()
+}
+
+type SceneResult = Result<Arc<Scene>, SceneError>;
+
+/// The inboxes of the engine's thread.
+struct Inboxes<'a> {
+    orders: &'a Receiver<Order>,
+    builds: Receiver<Done>,
+    scenes: Receiver<SceneResult>,
+}
+
+/// Messages of other threads.
+#[derive(Default)]
+struct Inputs {
+    orders: Vec<Order>,
+    builds: Vec<Done>,
+    scenes: Vec<SceneResult>,
+    /// Whether there was none for a while.
+    rests: bool,
+}
+
+impl Inboxes<'_> {
+    /// Takes all messages. Waits for one if there is nothing to render.
+    fn take(&self, run: &Run<'_>, pulse: &Pulse) -> Inputs {
+        let mut inputs = Inputs::default();
+        let Inputs {
+            orders,
+            builds,
+            scenes,
+            rests,
+        } = &mut inputs;
+        if !run.busy() {
+            pulse.rest();
+            let wait = match run.owes_pixels() {
+                true => crossbeam_channel::after(REST),
+                false => crossbeam_channel::never(),
+            };
+            select! {
+                recv(self.orders) -> order => orders.push(order.unwrap_or(Order::Quit)),
+                recv(self.builds) -> done => builds.extend(done),
+                recv(self.scenes) -> scene => scenes.extend(scene),
+                recv(wait) -> _ => *rests = true,
+            }
+        } else if run.awaits_build() {
+            select! {
+                recv(self.orders) -> order => orders.push(order.unwrap_or(Order::Quit)),
+                recv(self.builds) -> done => builds.extend(done),
+                default(Duration::from_millis(10)) => {}
+            }
+        }
+        pulse.beat();
+        orders.extend(self.orders.try_iter());
+        builds.extend(self.builds.try_iter());
+        scenes.extend(self.scenes.try_iter());
+        inputs
+    }
+}
+
+impl<'a> Run<'a> {
+    fn new(
+        lab: Lab,
+        out: &'a Out,
+        jobs: Sender<Job>,
+        error_requests: Sender<ErrorRequest>,
+        loaded: Sender<SceneResult>,
+    ) -> Run<'a> {
+        Run {
+            lab,
+            out,
+            desired: RenderRequest::default(),
+            number: 0,
+            sides: Default::default(),
+            jobs,
+            error_requests,
+            scene: None,
+            scene_key: None,
+            loaded_key: None,
+            scene_number: 0,
+            loading: None,
+            loaded,
+            clock: Clocked {
+                now: 0.0,
+                last: Instant::now(),
+                steps: 0,
+                jumps: 0,
+            },
+            turn: 0,
+            restarts: false,
+            renderdoc: false,
+            last_read_back: Instant::now(),
+            last_rendered: Instant::now(),
+            waited: false,
+        }
+    }
 }
 
 impl Run<'_> {
@@ -449,20 +492,14 @@ impl Run<'_> {
             .any(|s| s.last_ms > LONG && s.building.is_some_and(soon))
     }
 
-    fn handle(
-        &mut self,
-        orders: Vec<Order>,
-        builds: Vec<Done>,
-        scenes: Vec<Result<Arc<Scene>, SceneError>>,
-        desired: &Mutex<Numbered>,
-    ) -> Result<(), LabError> {
-        for scene in scenes {
+    fn handle(&mut self, inputs: Inputs, desired: &Mutex<Numbered>) -> Result<(), LabError> {
+        for scene in inputs.scenes {
             self.scene_came(scene)?;
         }
-        for done in builds {
+        for done in inputs.builds {
             self.built(done)?;
         }
-        for order in orders {
+        for order in inputs.orders {
             match order {
                 Order::CancelLoading => {
                     if let Some(cancel) = &self.loading {
@@ -481,10 +518,7 @@ impl Run<'_> {
                 Order::Reconcile | Order::Quit | Order::Restart => {}
             }
         }
-        let latest = desired
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner)
-            .clone();
+        let latest = latest(desired);
         if latest.0 != self.number {
             self.change(latest)?;
         }

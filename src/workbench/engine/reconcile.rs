@@ -3,9 +3,10 @@
 use super::Run;
 use super::builder::{Done, Job, Key};
 use super::converge::Need;
-use super::report::{GraphInfo, PassUses, Report};
+use super::report::{BuiltReport, GraphInfo, PassUses, Report};
 use crate::diagnostics::{Diagnostic, Place};
 use crate::lab::{LabError, Loaded, Session, params_of};
+use crate::scene::Scene;
 use crate::vulkan::VulkanError;
 use crate::workbench::desired::request::SideRequest;
 use std::sync::Arc;
@@ -39,7 +40,6 @@ impl Run<'_> {
             return Ok(());
         }
         let key = self.key(&desired, number);
-        let experiment = self.desired.experiment(&desired);
         let side = &mut self.sides[number];
         if side.key.as_ref() == Some(&key) {
             // What failed meanwhile is taken back.
@@ -51,62 +51,69 @@ impl Run<'_> {
             side.answered = self.number;
             return Ok(());
         }
-        let same_files = |k: &Key| k.side.graph == key.side.graph && k.revision == key.revision;
-        if let (Some(session), Some(old), Some(loaded)) =
-            (&mut side.session, &side.key, &side.loaded)
-            && !side.preview
-            && same_files(old)
-            && (old.size, old.scene, &old.wanted) == (key.size, key.scene, &key.wanted)
-        {
-            let mut params = loaded.graph.params.clone();
-            let params = match desired.apply(&mut params) {
-                true => Ok(params),
-                // The experiment has the places of wrong values.
-                false => params_of(&loaded.graph, &experiment),
-            };
-            let set = params.and_then(|params| session.set_params(&self.lab, &params));
-            match set {
-                Ok(true) => {
-                    side.key = Some(key);
-                    side.failed = None;
-                    side.answered = self.number;
-                    self.out.send(Report::Set { side: number });
-                    self.request_frames_of(1 - number, Need::Frames(1));
-                    self.request_frames_of(number, Need::Light);
-                    return Ok(());
-                }
-                Ok(false) => {}
-                Err(error) => {
-                    self.fail(number, key, error)?;
-                    return Ok(());
-                }
+        match self.set_values(number, &key) {
+            Ok(true) => {
+                let side = &mut self.sides[number];
+                (side.key, side.failed, side.answered) = (Some(key), None, self.number);
+                self.out.send(Report::Set { side: number });
+                self.request_frames_of(1 - number, Need::Frames(1));
+                self.request_frames_of(number, Need::Light);
+                Ok(())
             }
+            Ok(false) => {
+                // The first picture of all comes from a graph of two small shaders.
+                let file = self.lab.home.folders().passes.join("preview.ron");
+                let is_first = self.sides[number].session.is_none() && number == 0;
+                self.build(number, key, scene, is_first && file.is_file());
+                Ok(())
+            }
+            Err(error) => self.fail(number, key, error),
+        }
+    }
+
+    /// Sets the values of a side in its session. False if that takes a build.
+    fn set_values(&mut self, number: usize, key: &Key) -> Result<bool, LabError> {
+        let side = &mut self.sides[number];
+        let (Some(session), Some(old), Some(loaded)) = (&mut side.session, &side.key, &side.loaded)
+        else {
+            return Ok(false);
+        };
+        let set = Key {
+            side: key.side.clone(),
+            ..old.clone()
+        };
+        if side.preview || set != *key || old.side.graph != key.side.graph {
+            return Ok(false);
+        }
+        let mut params = loaded.graph.params.clone();
+        if !key.side.apply(&mut params) {
+            // The experiment has the places of wrong values.
+            params = params_of(&loaded.graph, &self.desired.experiment(&key.side))?;
+        }
+        session.set_params(&self.lab, &params)
+    }
+
+    /// Starts the build of a session, unless one is in work.
+    fn build(&mut self, number: usize, key: Key, scene: Arc<Scene>, preview: bool) {
+        let side = &self.sides[number];
+        if side.building.is_some() {
+            return;
         }
         // B starts with objects that it can share with A, and vice versa.
-        let other = self.sides[1 - number]
-            .session
-            .as_ref()
-            .filter(|_| self.sides[number].session.is_none());
-        let shared = other.map(|s| s.share());
-        let preview_exists = self.lab.home.folders().passes.join("preview.ron").is_file();
-        let side = &mut self.sides[number];
-        if side.building.is_some() {
-            return Ok(());
-        }
-        // The first picture of all comes from a graph of two small shaders.
-        let preview = side.session.is_none() && number == 0 && preview_exists;
-        let mut experiment = experiment;
+        let other = self.sides[1 - number].session.as_ref();
+        let reuse = match &side.session {
+            Some(session) => Some(session.reusable_parts()),
+            None => other.map(|s| s.share()),
+        };
+        let same_files = |k: &Key| k.side.graph == key.side.graph && k.revision == key.revision;
+        let has_files = !side.preview && side.key.as_ref().is_some_and(same_files);
+        let loaded = side.loaded.clone().filter(|_| has_files);
+        let mut experiment = self.desired.experiment(&key.side);
         if preview {
             experiment.graph = "preview.ron".into();
             experiment.params.clear();
         }
-        let loaded = side
-            .loaded
-            .clone()
-            .filter(|_| !side.preview && side.key.as_ref().is_some_and(same_files));
-        let reuse = side.session.as_ref().map(|s| s.reusable_parts()).or(shared);
-        side.building = Some(Instant::now());
-        let lab = self.lab.clone();
+        self.sides[number].building = Some(Instant::now());
         let _ = self.jobs.send(Job {
             side: number,
             key,
@@ -115,55 +122,22 @@ impl Run<'_> {
             reuse,
             loaded,
             preview,
-            lab,
+            lab: self.lab.clone(),
         });
-        Ok(())
     }
 
     pub(super) fn built(&mut self, done: Done) -> Result<(), LabError> {
         let number = done.side;
         self.sides[number].building = None;
-        if self.desired.sides[number].is_none() {
+        let Some(desired) = self.desired.sides[number].clone() else {
             return Ok(());
-        }
+        };
         match done.result {
-            Ok((mut session, loaded)) => {
-                let side = &mut self.sides[number];
-                side.fresh = side.fresh || side.session.is_none() || side.preview;
-                let need = side
-                    .key
-                    .as_ref()
-                    .map_or(Need::Light, |key| need(key, &done.key));
-                if let Some(mut old) = side.session.take() {
-                    let finished = old.finish()?;
-                    self.report_frames(number, finished);
-                    session.swap_in(&mut old)?;
-                }
-                let side = &mut self.sides[number];
-                side.preview = done.preview;
-                side.lights = true;
-                side.failed = None;
-                let info = info(&session, &loaded);
-                let change = session.program.change;
-                side.session = Some(session);
-                side.loaded = Some(loaded);
-                if done.preview {
-                    side.key = None;
-                } else {
-                    side.key = Some(done.key.clone());
-                    let ms = done.start.elapsed().as_secs_f64() * 1e3;
-                    let revision = done.key.revision;
-                    let objects = Arc::strong_count(&self.lab.gpu);
-                    let info = Arc::new(info);
-                    self.out.send(Report::Built {
-                        side: number,
-                        info,
-                        change,
-                        ms,
-                        revision,
-                        objects,
-                    });
-                }
+            Ok((session, loaded)) => {
+                let key = (!done.preview).then_some(&done.key);
+                let need = self.sides[number].key.as_ref();
+                let need = need.map_or(Need::Light, |key| need_of(key, &done.key));
+                self.swap_in(number, session, loaded, key, done.start)?;
                 self.request_frames_of(1 - number, Need::Frames(1));
                 self.request_frames_of(number, need);
             }
@@ -171,33 +145,49 @@ impl Run<'_> {
                 // Whatever is wrong will be said by the graph itself; here is none to fall back to.
                 self.out
                     .send(Report::Trouble(format!("no preview: {error}")));
-                let key = self.desired.sides[number]
-                    .clone()
-                    .map(|w| self.key(&w, number));
                 self.sides[number].failed = None;
-                if let (Some(key), Some(scene), Some(desired)) =
-                    (key, self.scene.clone(), &self.desired.sides[number])
-                {
-                    let experiment = self.desired.experiment(desired);
-                    self.sides[number].building = Some(Instant::now());
-                    let (reuse, loaded, lab) = (None, None, self.lab.clone());
-                    let job = Job {
-                        side: number,
-                        key,
-                        experiment,
-                        scene,
-                        reuse,
-                        loaded,
-                        preview: false,
-                        lab,
-                    };
-                    let _ = self.jobs.send(job);
+                if let Some(scene) = self.scene.clone() {
+                    let key = self.key(&desired, number);
+                    self.build(number, key, scene, false);
                 }
                 return Ok(());
             }
             Err(error) => self.fail(number, done.key, error)?,
         }
         self.reconcile(number)
+    }
+
+    /// Swaps in the session of a build that began at `start`; of the preview without a key.
+    fn swap_in(
+        &mut self,
+        number: usize,
+        mut session: Box<Session>,
+        loaded: Loaded,
+        key: Option<&Key>,
+        start: Instant,
+    ) -> Result<(), LabError> {
+        let side = &mut self.sides[number];
+        side.fresh = side.fresh || side.session.is_none() || side.preview;
+        if let Some(mut old) = side.session.take() {
+            let finished = old.finish()?;
+            self.report_frames(number, finished);
+            session.swap_in(&mut old)?;
+        }
+        if let Some(key) = key {
+            self.out.send(Report::Built(BuiltReport {
+                side: number,
+                info: Arc::new(info(&session, &loaded)),
+                change: session.program.change,
+                ms: start.elapsed().as_secs_f64() * 1e3,
+                revision: key.revision,
+                objects: Arc::strong_count(&self.lab.gpu),
+            }));
+        }
+        let side = &mut self.sides[number];
+        side.key = key.cloned();
+        (side.preview, side.lights, side.failed) = (key.is_none(), true, None);
+        (side.session, side.loaded) = (Some(session), Some(loaded));
+        Ok(())
     }
 
     /// Reports mistakes, and the old session runs on. Only a lost device is an error of the engine.
@@ -221,7 +211,7 @@ impl Run<'_> {
 }
 
 /// The frames that a build needs if it replaces another one.
-fn need(old: &Key, new: &Key) -> Need {
+fn need_of(old: &Key, new: &Key) -> Need {
     let same = Key {
         size: new.size,
         wanted: new.wanted.clone(),
@@ -280,6 +270,5 @@ fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
         left_out: plan.dropped.clone(),
         empty,
         uses,
-        warnings: loaded.warnings.clone(),
     }
 }

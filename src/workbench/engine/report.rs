@@ -61,8 +61,23 @@ pub struct GraphInfo {
     pub left_out: Vec<(usize, String)>,
     /// Resources that only passes which are off would write.
     pub empty: Vec<String>,
-    /// Findings that are no errors.
-    pub warnings: Vec<Diagnostic>,
+}
+
+/// A session that a side runs from now on.
+#[derive(Clone)]
+pub struct BuiltReport {
+    /// 0 is A, 1 is B.
+    pub side: usize,
+    /// The running session.
+    pub info: Arc<GraphInfo>,
+    /// Numbers of objects kept and rebuilt.
+    pub change: Change,
+    /// From the start of the build to the swap.
+    pub ms: f64,
+    /// The sources' revision.
+    pub revision: u64,
+    /// Vulkan objects that live on the device: what grows is never let go.
+    pub objects: usize,
 }
 
 /// A picture and the times of its frame.
@@ -101,22 +116,8 @@ pub struct PictureReport {
 pub enum Report {
     /// A device was opened.
     Device(DeviceReport),
-    /// A side runs something new. The times are those of the whole build, ms, and of the wait from
-    /// the change to it.
-    Built {
-        /// 0 is A, 1 is B.
-        side: usize,
-        /// The running session.
-        info: Arc<GraphInfo>,
-        /// Numbers of objects kept and rebuilt.
-        change: Change,
-        /// From the start of the build to the swap.
-        ms: f64,
-        /// The sources' revision.
-        revision: u64,
-        /// Vulkan objects that live on the device: what grows is never let go.
-        objects: usize,
-    },
+    /// A side runs something new.
+    Built(BuiltReport),
     /// A build failed; what ran before runs on.
     Failed {
         /// 0 is A, 1 is B.

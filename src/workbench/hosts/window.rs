@@ -146,11 +146,8 @@ impl App {
         output.platform_output.accesskit_update = None;
         open.state
             .handle_platform_output(&open.window, output.platform_output);
-        let commands = output
-            .viewport_output
-            .get(&ViewportId::ROOT)
-            .map_or(&[][..], |v| &v.commands);
-        for command in commands {
+        let viewport = output.viewport_output.get(&ViewportId::ROOT);
+        for command in viewport.iter().flat_map(|v| &v.commands) {
             if let egui::ViewportCommand::Fullscreen(on) = command {
                 open.window
                     .set_fullscreen(on.then_some(winit::window::Fullscreen::Borderless(None)));
@@ -177,16 +174,9 @@ impl App {
         if painted {
             workbench.painted();
         }
-        let delay = output
-            .viewport_output
-            .get(&ViewportId::ROOT)
-            .map_or(Duration::MAX, |v| v.repaint_delay);
-        let delay = soon.map_or(delay, |s| delay.min(s));
-        let delay = if more {
-            delay.min(Duration::from_millis(110))
-        } else {
-            delay
-        };
+        let more = more.then_some(Duration::from_millis(110));
+        let delays = [viewport.map(|v| v.repaint_delay), soon, more];
+        let delay = delays.into_iter().flatten().min().unwrap_or(Duration::MAX);
         self.repaint_at = Instant::now().checked_add(delay);
         Ok(())
     }

@@ -20,63 +20,34 @@ pub(crate) fn control(
     {
         return response;
     }
-    let name = if changed {
-        RichText::new(title).color(CHANGED)
-    } else {
-        RichText::new(title)
+    let name = match changed {
+        true => RichText::new(title).color(CHANGED),
+        false => RichText::new(title),
     };
-    let unit = if param.unit.is_empty() {
-        String::new()
-    } else {
-        format!(" {}", param.unit)
-    };
-    let (low, high) = param.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-    let bounded = low.is_finite() && high.is_finite();
-    let drag = |step: f64| param.step.unwrap_or(step);
     match (value, &param.kind) {
         (Value::Bool(v), _) => ui.checkbox(v, name),
         (Value::Int(v), _) => {
-            let range = if bounded {
-                (low as i64, high as i64)
-            } else {
-                (i64::from(i32::MIN), i64::from(i32::MAX))
-            };
-            let slid = bounded.then(|| slider(ui, param, title, v, range));
-            let number = DragValue::new(v)
-                .suffix(unit)
-                .range(range.0..=range.1)
-                .speed(drag(0.1));
+            let bounds = bounds(param).map(|(low, high)| (low as i64, high as i64));
+            let (low, high) = bounds.unwrap_or((i32::MIN.into(), i32::MAX.into()));
+            let slid = bounds.map(|range| slider(ui, param, title, v, range));
+            let number = DragValue::new(v).suffix(unit(param)).range(low..=high);
+            let number = number.speed(param.step.unwrap_or(0.1));
             joined(slid, spin(ui, number, title), ui.label(name))
         }
         (Value::Float(v), _) => {
-            let slid = bounded.then(|| slider(ui, param, title, v, (low, high)));
-            let span = if bounded { (high - low) / 500.0 } else { 0.01 };
-            let number = DragValue::new(v)
-                .suffix(unit)
-                .range(low..=high)
-                .clamp_existing_to_range(false);
-            joined(
-                slid,
-                spin(ui, number.speed(drag(span)).max_decimals(6), title),
-                ui.label(name),
-            )
+            let bounds = bounds(param);
+            let slid = bounds.map(|range| slider(ui, param, title, v, range));
+            let speed = bounds.map_or(0.01, |(low, high)| (high - low) / 500.0);
+            let number = number(v, param, speed).suffix(unit(param)).max_decimals(6);
+            joined(slid, spin(ui, number, title), ui.label(name))
         }
         (Value::Vector(v), Kind::Colour) if v.len() == 3 => {
-            let mut rgb = [v[0] as f32, v[1] as f32, v[2] as f32];
-            let response = ui.color_edit_button_rgb(&mut rgb);
-            if response.changed() {
-                *v = rgb.iter().map(|c| f64::from(*c)).collect();
-            }
-            joined(None, response, ui.label(name))
+            joined(None, colour(ui, v), ui.label(name))
         }
         (Value::Vector(v), _) => {
-            let numbers = v.iter_mut().zip(["x", "y", "z", "w"]).map(|(x, axis)| {
-                let number = DragValue::new(x)
-                    .speed(drag(0.01))
-                    .range(low..=high)
-                    .clamp_existing_to_range(false);
-                spin(ui, number, &format!("{title} {axis}"))
-            });
+            let axes = v.iter_mut().zip(["x", "y", "z", "w"]);
+            let numbers =
+                axes.map(|(x, axis)| spin(ui, number(x, param, 0.01), &format!("{title} {axis}")));
             let numbers = numbers.reduce(|a, b| a | b);
             let label = ui.label(name);
             numbers.map_or(label.clone(), |n| n | label)
@@ -85,14 +56,8 @@ pub(crate) fn control(
             let combo = egui::ComboBox::from_id_salt(("choice", title)).selected_text(v.as_str());
             let shown = combo.show_ui(ui, |ui| {
                 for (i, option) in options.iter().enumerate() {
-                    ui.horizontal(|ui| {
-                        let label = ui.selectable_value(v, option.clone(), option);
-                        if let Some(help) = param.option_help.get(i).filter(|help| !help.is_empty())
-                        {
-                            label.on_hover_text(help);
-                            ui.weak(RichText::new(help).small());
-                        }
-                    });
+                    let help = param.option_help.get(i).map_or("", String::as_str);
+                    choice_row(ui, v, option, help);
                 }
             });
             let label = ui.label(name);
@@ -100,6 +65,47 @@ pub(crate) fn control(
         }
         (Value::Choice(v), _) => ui.label(v.as_str()),
     }
+}
+
+fn colour(ui: &mut Ui, value: &mut Vec<f64>) -> Response {
+    let mut rgb = [value[0] as f32, value[1] as f32, value[2] as f32];
+    let response = ui.color_edit_button_rgb(&mut rgb);
+    if response.changed() {
+        *value = rgb.iter().map(|c| f64::from(*c)).collect();
+    }
+    response
+}
+
+fn choice_row(ui: &mut Ui, value: &mut String, option: &String, help: &str) {
+    ui.horizontal(|ui| {
+        let label = ui.selectable_value(value, option.clone(), option);
+        if !help.is_empty() {
+            label.on_hover_text(help);
+            ui.weak(RichText::new(help).small());
+        }
+    });
+}
+
+/// The range of a parameter, if it is finite.
+fn bounds(param: &Param) -> Option<(f64, f64)> {
+    let range = param.range;
+    range.filter(|(low, high)| low.is_finite() && high.is_finite())
+}
+
+fn unit(param: &Param) -> String {
+    match param.unit.as_str() {
+        "" => String::new(),
+        unit => format!(" {unit}"),
+    }
+}
+
+/// A field for a number. A value out of range must not change because it is shown.
+fn number<'v>(value: &'v mut f64, param: &Param, speed: f64) -> DragValue<'v> {
+    let (low, high) = param.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    DragValue::new(value)
+        .range(low..=high)
+        .clamp_existing_to_range(false)
+        .speed(param.step.unwrap_or(speed))
 }
 
 /// A number that the graph chooses: `auto (78)`, and edits start from 78. Nothing for values that
@@ -113,38 +119,24 @@ fn automatic(
 ) -> Option<Response> {
     let default = param.default.number()?;
     let (low, high) = param.range?;
-    let (mut number, shown) = (auto, short_number(auto));
-    let unit = if param.unit.is_empty() {
-        String::new()
-    } else {
-        format!(" {}", param.unit)
-    };
-    let chosen = format!("auto ({shown}{unit})");
+    let (mut now, shown) = (auto, short_number(auto));
+    let chosen = format!("auto ({shown}{})", unit(param));
     let name = format!("{title}, {chosen}");
-    let slid = slider(ui, param, title, &mut number, (low, high));
-    let field = DragValue::new(&mut number)
-        .range(low..=high)
-        .clamp_existing_to_range(false)
-        .speed(param.step.unwrap_or((high - low) / 500.0))
-        .custom_formatter(move |x, _| {
-            if x == auto {
-                chosen.clone()
-            } else {
-                short_number(x)
-            }
+    let slid = slider(ui, param, title, &mut now, (low, high));
+    let field = number(&mut now, param, (high - low) / 500.0)
+        .custom_formatter(move |x, _| match x == auto {
+            true => chosen.clone(),
+            false => short_number(x),
         })
-        .custom_parser(move |text| {
-            if text.trim().starts_with("auto") {
-                Some(default)
-            } else {
-                text.trim().parse().ok()
-            }
+        .custom_parser(move |text| match text.trim().starts_with("auto") {
+            true => Some(default),
+            false => text.trim().parse().ok(),
         });
     let response = joined(Some(slid), spin(ui, field, &name), ui.label(title));
-    if number != auto {
+    if now != auto {
         *value = match value {
-            Value::Int(_) => Value::Int(number.round() as i64),
-            _ => Value::Float(number),
+            Value::Int(_) => Value::Int(now.round() as i64),
+            _ => Value::Float(now),
         };
     }
     Some(response)
@@ -189,6 +181,14 @@ pub(crate) fn spin(ui: &mut Ui, field: DragValue<'_>, name: &str) -> Response {
 /// The name of a text field or a menu, which else has none but its content.
 pub(crate) fn named(response: &Response, kind: egui::WidgetType, name: &str) {
     response.widget_info(|| WidgetInfo::labeled(kind, true, name));
+}
+
+/// A small button with a name of its own, as several have the same text. Returns whether it was
+/// clicked.
+pub(crate) fn small_button(ui: &mut Ui, text: &str, name: &str, about: &str) -> bool {
+    let button = ui.small_button(text);
+    named(&button, egui::WidgetType::Button, name);
+    button.on_hover_text(about).clicked()
 }
 
 fn joined(slider: Option<Response>, control: Response, label: Response) -> Response {

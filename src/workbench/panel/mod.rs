@@ -8,9 +8,9 @@ use crate::graph::effect::Reason;
 use crate::graph::param::Param;
 use crate::workbench::desired::edit;
 use crate::workbench::desired::request::SideRequest;
-use control::{CHANGED, control};
+use control::{CHANGED, control, named, small_button};
 use effects::Found;
-use egui::{RichText, Ui};
+use egui::{RichText, Ui, WidgetType};
 
 /// What of the panel is not part of the experiment.
 #[derive(Default)]
@@ -35,6 +35,23 @@ struct Shown<'a> {
     other: Option<&'a SideRequest>,
 }
 
+/// The parameters that a search finds.
+struct Wanted {
+    needle: String,
+    only_changed: bool,
+}
+
+impl Wanted {
+    fn is_search(&self) -> bool {
+        !self.needle.is_empty() || self.only_changed
+    }
+
+    fn has(&self, graph: &Graph, param: &Param, side: &SideRequest) -> bool {
+        matches(graph, param, &self.needle)
+            && (!self.only_changed || is_changed(graph, side, param))
+    }
+}
+
 /// The search field.
 fn search_id() -> egui::Id {
     egui::Id::new("search parameters")
@@ -56,11 +73,10 @@ impl Panel {
         (found, old): (Option<&Found>, bool),
     ) {
         self.top(ui, graph, side);
-        let needle = folded(&self.search);
-        let wanted = |p: &Param, side: &SideRequest| {
-            matches(graph, p, &needle) && (!self.only_changed || is_changed(graph, side, p))
+        let wanted = Wanted {
+            needle: folded(&self.search),
+            only_changed: self.only_changed,
         };
-        let searching = !needle.is_empty() || self.only_changed;
         let shown = Shown {
             graph,
             found,
@@ -69,60 +85,20 @@ impl Panel {
         };
         // Wide rows scroll: they must not make the panel wider.
         egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-            let mut any = false;
-            if !searching && !graph.pinned.is_empty() {
+            if !wanted.is_search() && !graph.pinned.is_empty() {
                 egui::CollapsingHeader::new("Pinned")
                     .default_open(true)
                     .show(ui, |ui| shown.pinned(ui, side));
             }
+            let mut any = false;
             for (number, group) in groups(graph).into_iter().enumerate() {
-                let of_group = |p: &&Param| p.group == group;
-                let list: Vec<&Param> = graph
-                    .params
-                    .offered()
-                    .filter(of_group)
-                    .filter(|p| wanted(p, side))
-                    .collect();
-                if list.is_empty() {
-                    continue;
-                }
-                any = true;
-                let count = graph
-                    .params
-                    .offered()
-                    .filter(of_group)
-                    .filter(|p| is_changed(graph, side, p))
-                    .count();
-                let title = if group.is_empty() { "Other" } else { group };
-                let title = match count {
-                    0 => RichText::new(title),
-                    n => RichText::new(format!("{title} ({n})")).color(CHANGED),
-                };
-                // Groups that a search opens are folded again after it.
-                let header =
-                    egui::CollapsingHeader::new(title).id_salt((searching, "group", number));
-                header.default_open(searching).show(ui, |ui| {
-                    for param in list {
-                        shown.row(ui, param, &param.name, side);
-                    }
-                });
+                any |= shown.group(ui, number, group, &wanted, side);
             }
-            for (name, instead) in graph
-                .params
-                .retired
-                .iter()
-                .filter(|r| searching && !self.only_changed && !r.0.contains('='))
-            {
-                if folded(name).contains(&needle) && graph.params.index(name).is_none() {
-                    any = true;
-                    elsewhere(ui, name, name, instead, side);
-                }
-            }
+            any |= shown.retired(ui, &wanted, side);
             if !any {
-                ui.weak(if self.only_changed && needle.is_empty() {
-                    "nothing is changed"
-                } else {
-                    "nothing matches"
+                ui.weak(match self.only_changed && wanted.needle.is_empty() {
+                    true => "nothing is changed",
+                    false => "nothing matches",
                 });
             }
         });
@@ -146,18 +122,14 @@ impl Panel {
                     !self.search.is_empty(),
                     egui::Button::new("×").small().frame(false),
                 );
-                clear.widget_info(|| {
-                    egui::WidgetInfo::labeled(egui::WidgetType::Button, true, "clear the search")
-                });
+                named(&clear, WidgetType::Button, "clear the search");
                 let hint = egui::TextEdit::singleline(&mut self.search)
                     .id(search_id())
                     .hint_text("search");
                 let field = ui
                     .add(hint.desired_width(f32::INFINITY))
                     .on_hover_text("Ctrl F; Esc clears");
-                field.widget_info(|| {
-                    egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "search parameters")
-                });
+                named(&field, WidgetType::TextEdit, "search parameters");
                 self.typing = field.has_focus();
                 if clear.clicked() {
                     self.search.clear();
@@ -179,6 +151,55 @@ impl Shown<'_> {
             }
         }
         self.needed(ui, side);
+    }
+
+    /// The parameters of a group that are wanted. False if there are none.
+    fn group(
+        &self,
+        ui: &mut Ui,
+        number: usize,
+        group: &str,
+        wanted: &Wanted,
+        side: &mut SideRequest,
+    ) -> bool {
+        let graph = self.graph;
+        let of_group = || graph.params.offered().filter(|p| p.group == group);
+        let list: Vec<&Param> = of_group().filter(|p| wanted.has(graph, p, side)).collect();
+        if list.is_empty() {
+            return false;
+        }
+        let title = if group.is_empty() { "Other" } else { group };
+        let title = match of_group().filter(|p| is_changed(graph, side, p)).count() {
+            0 => RichText::new(title),
+            n => RichText::new(format!("{title} ({n})")).color(CHANGED),
+        };
+        // Groups that a search opens are folded again after it.
+        let searching = wanted.is_search();
+        let header = egui::CollapsingHeader::new(title).id_salt((searching, "group", number));
+        header.default_open(searching).show(ui, |ui| {
+            for param in list {
+                self.row(ui, param, &param.name, side);
+            }
+        });
+        true
+    }
+
+    /// The parameters of other graphs that a search finds. False if there are none.
+    fn retired(&self, ui: &mut Ui, wanted: &Wanted, side: &mut SideRequest) -> bool {
+        let params = &self.graph.params;
+        let fits = |name: &str| {
+            let is_param = !name.contains('=') && params.index(name).is_none();
+            is_param && folded(name).contains(&wanted.needle)
+        };
+        let searching = wanted.is_search() && !wanted.only_changed;
+        let mut any = false;
+        for (name, instead) in &params.retired {
+            if searching && fits(name) {
+                any = true;
+                elsewhere(ui, name, name, instead, side);
+            }
+        }
+        any
     }
 
     /// The choice with which most of the dimmed pinned parameters would count, a click away.
@@ -224,7 +245,7 @@ impl Shown<'_> {
         ui.horizontal(|ui| {
             let reset = ui.add_visible(changed, egui::Button::new("↺").small().frame(false));
             let name = format!("reset {}", param.name);
-            reset.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &name));
+            named(&reset, WidgetType::Button, &name);
             if reset.on_hover_text("Back to the default").clicked() {
                 value = param.default.clone();
             }
@@ -263,15 +284,8 @@ fn elsewhere(ui: &mut Ui, name: &str, title: &str, instead: &str, side: &mut Sid
             .map(|(graph, _)| graph);
         match graph {
             Some(graph) => {
-                let button = ui.small_button(format!("use {graph}"));
-                button.widget_info(|| {
-                    egui::WidgetInfo::labeled(
-                        egui::WidgetType::Button,
-                        true,
-                        format!("use {graph} for {title}"),
-                    )
-                });
-                if button.on_hover_text(instead).clicked() {
+                let text = format!("use {graph}");
+                if small_button(ui, &text, &format!("{text} for {title}"), instead) {
                     side.graph = graph.to_string();
                 }
             }

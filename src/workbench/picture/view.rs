@@ -118,7 +118,7 @@ impl Workbench {
             (area.width() * scale) as u32,
             (area.height() * scale) as u32,
         ];
-        let Some(a) = self.sides[0].picture.as_ref().map(|p| p.size) else {
+        let Some(size) = self.sides[0].picture.as_ref().map(|p| p.size) else {
             painter.text(
                 area.center(),
                 Align2::CENTER_CENTER,
@@ -129,112 +129,70 @@ impl Workbench {
             return;
         };
         let both = self.desired.sides[1].is_some() && self.sides[1].picture.is_some();
-        let zoom = self.view.zoom;
-        let fit = |area: Rect| zoom.place(fit(area, a, scale), a[0], scale);
-        let mut shown = fit(area);
-        let draw = |number: usize, rect: Rect, clip: Rect| {
-            painter.with_clip_rect(clip.intersect(area)).image(
-                textures[number],
-                rect,
-                WHOLE,
-                Color32::WHITE,
-            );
+        let canvas = Canvas {
+            painter: &painter,
+            textures,
+            area,
+            zoom: self.view.zoom,
+            size,
+            scale,
         };
-        let [a_differs, b_differs] = self.sides_in_words();
-        let names = [format!("A  {a_differs}"), format!("B  {b_differs}")]
-            .map(|n| n.trim_end().to_string());
-        match self.view.mode {
-            _ if !both => draw(0, shown, area),
-            Mode::Split => {
-                let x = shown.left() + shown.width() * self.view.split;
-                draw(
-                    0,
-                    shown,
-                    Rect::from_min_max(area.min, Pos2::new(x, area.max.y)),
-                );
-                draw(
-                    1,
-                    shown,
-                    Rect::from_min_max(Pos2::new(x, area.min.y), area.max),
-                );
-                painter.vline(x, shown.y_range(), Stroke::new(1.5, Color32::WHITE));
-                badge(
-                    &painter,
-                    Pos2::new(x - 4.0, shown.top() + 4.0),
-                    Align2::RIGHT_TOP,
-                    &names[0],
-                );
-                badge(
-                    &painter,
-                    Pos2::new(x + 4.0, shown.top() + 4.0),
-                    Align2::LEFT_TOP,
-                    &names[1],
-                );
-            }
-            Mode::Flip => {
-                draw(usize::from(self.view.flipped), shown, area);
-                badge(
-                    &painter,
-                    corner(shown.intersect(area)),
-                    Align2::RIGHT_BOTTOM,
-                    &names[usize::from(self.view.flipped)],
-                );
-            }
-            Mode::Side => {
-                let (left, right) = area.split_left_right_at_fraction(0.5);
-                shown = fit(left);
-                draw(0, shown, left);
-                draw(1, fit(right), right);
-                badge(
-                    &painter,
-                    corner(shown.intersect(left)),
-                    Align2::RIGHT_BOTTOM,
-                    &names[0],
-                );
-                badge(
-                    &painter,
-                    corner(fit(right).intersect(right)),
-                    Align2::RIGHT_BOTTOM,
-                    &names[1],
-                );
-            }
-            Mode::Difference | Mode::Perceived => {
-                if self
-                    .comparison
-                    .shown
-                    .as_ref()
-                    .is_some_and(|(mode, _)| *mode == self.view.mode)
-                {
-                    draw(COMPARISON, shown, area);
-                } else {
-                    draw(0, shown, area);
-                }
-            }
-        }
+        let [shown, b] = self.draw_pictures(&canvas, both);
         if self.stale() {
-            painter.rect_stroke(
-                shown,
-                0.0,
-                Stroke::new(2.0, Color32::from_rgb(220, 80, 60)),
-                egui::StrokeKind::Inside,
-            );
+            let stroke = Stroke::new(2.0, Color32::from_rgb(220, 80, 60));
+            painter.rect_stroke(shown, 0.0, stroke, egui::StrokeKind::Inside);
         }
         if let Some(what) = self.pending(ui.ctx()) {
             let foot = area.intersect(shown).center_bottom() - Vec2::new(0.0, 6.0);
             badge(&painter, foot, Align2::CENTER_BOTTOM, &what);
         }
-        let b = match self.view.mode {
-            Mode::Side => fit(area.split_left_right_at_fraction(0.5).1),
-            _ => shown,
-        };
-        self.timers(
-            &painter,
-            shown.intersect(area),
-            both.then_some(b.intersect(area)),
-        );
+        let b = both.then_some(b.intersect(area));
+        self.timers(&painter, shown.intersect(area), b);
         self.view.place = Some(shown);
         self.read_out(&painter, &response, shown, both);
-        self.mouse(ui, &response, shown, a, both);
+        self.mouse(ui, &response, shown, size, both);
+    }
+
+    /// Draws the pictures in the mode of comparison. Returns the places of A and B.
+    fn draw_pictures(&self, canvas: &Canvas<'_>, both: bool) -> [Rect; 2] {
+        let area = canvas.area;
+        let shown = canvas.fit(area);
+        if !both {
+            canvas.draw(0, shown, area);
+            return [shown; 2];
+        }
+        let [a, b] = self.sides_in_words();
+        let names = [format!("A  {a}"), format!("B  {b}")].map(|n| n.trim_end().to_string());
+        match self.view.mode {
+            Mode::Split => {
+                let x = shown.left() + shown.width() * self.view.split;
+                let (left, right) = area.split_left_right_at_x(x);
+                canvas.draw(0, shown, left);
+                canvas.draw(1, shown, right);
+                let painter = canvas.painter;
+                painter.vline(x, shown.y_range(), Stroke::new(1.5, Color32::WHITE));
+                let [left, right] = [x - 4.0, x + 4.0].map(|x| Pos2::new(x, shown.top() + 4.0));
+                badge(painter, left, Align2::RIGHT_TOP, &names[0]);
+                badge(painter, right, Align2::LEFT_TOP, &names[1]);
+            }
+            Mode::Flip => {
+                let number = usize::from(self.view.flipped);
+                canvas.draw_named(number, shown, area, &names);
+            }
+            Mode::Side => {
+                let (left, right) = area.split_left_right_at_fraction(0.5);
+                let places = [canvas.fit(left), canvas.fit(right)];
+                canvas.draw_named(0, places[0], left, &names);
+                canvas.draw_named(1, places[1], right, &names);
+                return places;
+            }
+            Mode::Difference | Mode::Perceived => {
+                let made = self.comparison.shown.as_ref();
+                let is_made = made.is_some_and(|(mode, _)| *mode == self.view.mode);
+                canvas.draw(if is_made { COMPARISON } else { 0 }, shown, area);
+            }
+        }
+        [shown; 2]
     }
 
     /// The pixel under the pointer: of B where B is shown.
@@ -319,9 +277,34 @@ impl Workbench {
     }
 }
 
-/// Where a picture's name is: its times are at the top.
-fn corner(picture: Rect) -> Pos2 {
-    picture.right_bottom() - Vec2::splat(4.0)
+/// The viewport that pictures of a size are drawn in.
+struct Canvas<'a> {
+    painter: &'a egui::Painter,
+    textures: &'a [TextureId],
+    area: Rect,
+    zoom: Zoom,
+    size: [u32; 2],
+    /// Pixels a point.
+    scale: f32,
+}
+
+impl Canvas<'_> {
+    fn fit(&self, area: Rect) -> Rect {
+        let place = fit(area, self.size, self.scale);
+        self.zoom.place(place, self.size[0], self.scale)
+    }
+
+    fn draw(&self, number: usize, rect: Rect, clip: Rect) {
+        let painter = self.painter.with_clip_rect(clip.intersect(self.area));
+        painter.image(self.textures[number], rect, WHOLE, Color32::WHITE);
+    }
+
+    /// Draws a picture with its name at the foot: its times are at the top.
+    fn draw_named(&self, number: usize, rect: Rect, clip: Rect, names: &[String; 2]) {
+        self.draw(number, rect, clip);
+        let corner = rect.intersect(clip).right_bottom() - Vec2::splat(4.0);
+        badge(self.painter, corner, Align2::RIGHT_BOTTOM, &names[number]);
+    }
 }
 
 fn badge(painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str) {

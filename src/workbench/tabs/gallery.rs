@@ -8,8 +8,11 @@ use crate::workbench::background::Background;
 use crate::workbench::desired::save;
 use crate::workbench::engine::Order;
 use crate::workbench::engine::report::Report;
+use crate::workbench::messages::RED;
+use crate::workbench::panel::control::{named, small_button};
 use crate::workbench::{Workbench, short};
-use egui::{ColorImage, TextureHandle, TextureId, Ui, Vec2};
+use egui::{ColorImage, TextureHandle, TextureId, Ui, Vec2, WidgetType};
+use serde_json::json;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -62,85 +65,75 @@ impl Workbench {
     }
 
     fn save_row(&mut self, ui: &mut Ui) {
+        self.name_experiment();
+        let gallery = &mut self.tabs.gallery;
+        let again = gallery.taken.is_some();
+        let text = match (again, self.desired.sides[1].is_some()) {
+            (true, _) => "replace it",
+            (false, false) => "save",
+            // The side of the shown parameters.
+            (false, true) => ["save A", "save B"][self.panel.side.min(1)],
+        };
+        let about = "Written to configs/NAME.ron, without values at their default";
+        let mut save = false;
+        ui.horizontal(|ui| {
+            let field = egui::TextEdit::singleline(&mut gallery.name).desired_width(140.0);
+            let field = ui.add(field).on_hover_text(about);
+            named(&field, WidgetType::TextEdit, "experiment name");
+            if field.changed() {
+                (gallery.taken, gallery.saved) = (None, None);
+            }
+            save = ui.button(text).on_hover_text("Ctrl S").clicked();
+        });
+        if save {
+            self.save(again);
+        }
+        let gallery = &self.tabs.gallery;
+        match &gallery.taken {
+            Some(taken) => drop(ui.weak(format!(
+                "configs/{taken}.ron exists; replacing keeps its comments"
+            ))),
+            None => said(ui, gallery.saved.as_ref()),
+        }
+    }
+
+    fn name_experiment(&mut self) {
         if self.tabs.gallery.name.is_empty() {
             self.tabs.gallery.name.clone_from(&self.experiment.name);
         }
-        ui.horizontal(|ui| {
-            let edit = egui::TextEdit::singleline(&mut self.tabs.gallery.name).desired_width(140.0);
-            let field = ui
-                .add(edit)
-                .on_hover_text("Written to configs/NAME.ron, without values at their default");
-            field.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "experiment name")
-            });
-            if field.changed() {
-                (self.tabs.gallery.taken, self.tabs.gallery.saved) = (None, None);
-            }
-            let again = self.tabs.gallery.taken.is_some();
-            let text = match (again, self.desired.sides[1].is_some()) {
-                (true, _) => "replace it",
-                (false, false) => "save",
-                // The side of the shown parameters.
-                (false, true) => ["save A", "save B"][self.panel.side.min(1)],
-            };
-            if ui.button(text).on_hover_text("Ctrl S").clicked() {
-                self.save(again);
-            }
-        });
-        if let Some(taken) = &self.tabs.gallery.taken {
-            ui.weak(format!(
-                "configs/{taken}.ron exists; replacing keeps its comments"
-            ));
-        }
-        said(
-            ui,
-            self.tabs
-                .gallery
-                .saved
-                .as_ref()
-                .filter(|_| self.tabs.gallery.taken.is_none()),
-        );
     }
 
     /// Saves side A, or B if the panel shows it. An existing file is replaced only after a second
     /// click.
     pub(crate) fn save(&mut self, replace: bool) {
-        if self.tabs.gallery.name.is_empty() {
-            self.tabs.gallery.name.clone_from(&self.experiment.name);
-        }
-        let result = self.save_as(&self.tabs.gallery.name.clone(), replace);
+        self.name_experiment();
+        let result = self.save_as(&self.tabs.gallery.name, replace);
+        let ok = result.is_ok();
         match result {
             Ok(path) => {
-                self.experiment.name = short(&path.to_string_lossy());
+                let file = path.display().to_string();
+                self.experiment.name = short(&file);
+                self.messages.status = format!("saved {file}");
+                self.event("saved", json!({ "path": file }));
                 // The name as it was corrected.
-                (self.tabs.gallery.taken, self.tabs.gallery.name) =
-                    (None, self.experiment.name.clone());
-                self.messages.status = format!("saved {}", path.display());
-                self.tabs.gallery.saved = Some((true, self.messages.status.clone()));
-                self.experiment.written = Some(path.clone());
-                self.event(
-                    "saved",
-                    serde_json::json!({ "path": path.display().to_string() }),
-                );
+                self.tabs.gallery.name.clone_from(&self.experiment.name);
+                self.tabs.gallery.taken = None;
+                self.experiment.written = Some(path);
             }
             Err(e) => {
-                let taken = checked_name(&self.tabs.gallery.name)
-                    .ok()
-                    .filter(|n| self.experiment_path(n).exists());
-                self.tabs.gallery.taken = taken.filter(|_| !replace);
+                let taken = checked_name(&self.tabs.gallery.name).ok();
+                let taken = taken.filter(|n| !replace && self.experiment_path(n).exists());
+                self.tabs.gallery.taken = taken;
                 self.messages.status = e.to_string();
-                self.tabs.gallery.saved = Some((false, self.messages.status.clone()));
-                self.event("not saved", serde_json::json!({ "why": e.to_string() }));
+                self.event("not saved", json!({ "why": self.messages.status }));
             }
         }
+        self.tabs.gallery.saved = Some((ok, self.messages.status.clone()));
     }
 
     fn experiment_path(&self, name: &str) -> PathBuf {
-        self.setup
-            .home
-            .root
-            .join("configs")
-            .join(format!("{name}.ron"))
+        let configs = self.setup.home.root.join("configs");
+        configs.join(format!("{name}.ron"))
     }
 
     fn save_as(&self, name: &str, replace: bool) -> Result<PathBuf, LabError> {
@@ -148,144 +141,128 @@ impl Workbench {
         if let Some(missing) = self.missing_scene() {
             return Err(LabError::Request(format!("not saved: {missing}")));
         }
-        let side = self.desired.sides[self.panel.side]
-            .as_ref()
-            .or(self.desired.sides[0].as_ref());
-        let info = self.sides[self.panel.side]
-            .info
-            .as_ref()
-            .or(self.sides[0].info.as_ref());
+        let number = self.panel.side;
+        let [a, b] = &self.desired.sides;
+        let side = [a, b][number].as_ref().or(a.as_ref());
+        let info = self.sides[number].info.as_ref();
+        let info = info.or(self.sides[0].info.as_ref());
         let (Some(side), Some(info)) = (side, info) else {
             return Err(LabError::Request(
                 "there is nothing to save yet: no graph has been built".into(),
             ));
         };
-        let time = self.sides[0]
-            .picture
-            .as_ref()
-            .map_or(self.desired.clock.at, |p| p.time);
         let side = save::without_pointer(side, info.graph.pointer.as_deref());
-        let experiment = save::experiment(
-            &self.desired,
-            &side,
-            &name,
-            time,
-            self.scene.loaded.as_deref(),
-        );
+        let (time, scene) = (self.shown_time(), self.scene.loaded.as_deref());
+        let experiment = save::experiment(&self.desired, &side, &name, time, scene);
         let path = self.experiment_path(&name);
         crate::experiment::write(&experiment, &info.graph.params, &path, replace)?;
         Ok(path)
     }
 
     fn capture_rows(&mut self, ui: &mut Ui) {
+        let about = "Renders afresh and keeps pictures, sources, settings and times in \
+                     captures/NAME (F12)";
         ui.horizontal(|ui| {
-            let edit = egui::TextEdit::singleline(&mut self.tabs.gallery.capture_name).hint_text(&self.experiment.name);
-            let field = ui.add(edit.desired_width(140.0));
-            field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "capture name"));
-            let hover = "Renders afresh and keeps pictures, sources, settings and times in captures/NAME (F12)";
-            if ui.button("capture").on_hover_text(hover).clicked() {
+            let name = &mut self.tabs.gallery.capture_name;
+            let field = egui::TextEdit::singleline(name).hint_text(&self.experiment.name);
+            let field = ui.add(field.desired_width(140.0));
+            named(&field, WidgetType::TextEdit, "capture name");
+            if ui.button("capture").on_hover_text(about).clicked() {
                 self.capture();
             }
         });
         said(ui, self.tabs.gallery.captured.as_ref());
-        let Some(info) = self.sides[0].info.clone() else {
+        let Some(info) = &self.sides[0].info else {
             return;
         };
-        egui::CollapsingHeader::new(format!("resources ({})", self.tabs.gallery.resources.len()))
-            .show(ui, |ui| {
-                ui.weak("kept as EXR next to the picture");
-                for (name, _) in &info.graph.textures {
-                    let mut chosen = self.tabs.gallery.resources.contains(name);
-                    if ui.checkbox(&mut chosen, name).changed() {
-                        self.tabs.gallery.resources.retain(|r| r != name);
-                        if chosen {
-                            self.tabs.gallery.resources.push(name.clone());
-                        }
-                    }
+        let resources = &mut self.tabs.gallery.resources;
+        let title = format!("resources ({})", resources.len());
+        egui::CollapsingHeader::new(title).show(ui, |ui| {
+            ui.weak("kept as EXR next to the picture");
+            for (name, _) in &info.graph.textures {
+                let mut chosen = resources.contains(name);
+                if ui.checkbox(&mut chosen, name).changed() {
+                    resources.retain(|r| r != name);
+                    resources.extend(chosen.then(|| name.clone()));
                 }
-            });
+            }
+        });
     }
 
     /// Captures the side that the panel shows.
     pub(crate) fn capture(&mut self) {
-        let name = match self.tabs.gallery.capture_name.trim() {
-            "" => self.experiment.name.clone(),
-            name => name.to_string(),
+        let gallery = &self.tabs.gallery;
+        let is_named = !gallery.capture_name.trim().is_empty();
+        let name = match is_named {
+            true => gallery.capture_name.trim(),
+            false => &self.experiment.name,
         };
-        let checked = checked_name(&name)
-            .map_err(LabError::from)
-            .and_then(|name| match self.missing_scene() {
-                Some(missing) => Err(LabError::Request(format!("not captured: {missing}"))),
-                None => Ok(name),
-            });
-        match checked {
+        let name = checked_name(name).map_err(LabError::from);
+        let name = name.and_then(|name| match self.missing_scene() {
+            Some(missing) => Err(LabError::Request(format!("not captured: {missing}"))),
+            None => Ok(name),
+        });
+        let ok = name.is_ok();
+        match name {
             Ok(name) => {
                 self.messages.status = format!("capturing {name}");
-                if !self.tabs.gallery.capture_name.trim().is_empty() {
+                if is_named {
                     self.tabs.gallery.capture_name.clone_from(&name);
                 }
-                self.tabs.gallery.captured = Some((true, self.messages.status.clone()));
-                self.engine.order(Order::Capture(
-                    self.panel.side,
-                    name,
-                    self.tabs.gallery.resources.clone(),
-                    self.view.timers,
-                ));
+                let resources = self.tabs.gallery.resources.clone();
+                let (side, timers) = (self.panel.side, self.view.timers);
+                self.engine
+                    .order(Order::Capture(side, name, resources, timers));
             }
             Err(e) => {
                 self.messages.status = e.to_string();
-                self.tabs.gallery.captured = Some((false, self.messages.status.clone()));
-                self.event(
-                    "captured",
-                    serde_json::json!({ "ok": false, "text": self.messages.status }),
-                );
+                let fields = json!({ "ok": false, "text": self.messages.status });
+                self.event("captured", fields);
             }
         }
+        self.tabs.gallery.captured = Some((ok, self.messages.status.clone()));
     }
 
     fn captured(&mut self, result: &Result<PathBuf, String>) {
-        let ok = result.is_ok();
-        let text = match result {
-            Ok(path) => {
-                self.tabs.gallery.captures = None;
-                format!("captured {}", path.display())
-            }
-            Err(why) => format!("not captured: {why}"),
+        let (ok, text) = match result {
+            Ok(path) => (true, format!("captured {}", path.display())),
+            Err(why) => (false, format!("not captured: {why}")),
         };
-        self.event("captured", serde_json::json!({ "ok": ok, "text": text }));
+        if ok {
+            self.tabs.gallery.captures = None;
+        }
+        self.event("captured", json!({ "ok": ok, "text": text }));
         self.tabs.gallery.captured = Some((ok, text.clone()));
         self.messages.status = text;
     }
 
     fn gallery_rows(&mut self, ui: &mut Ui) {
         let folder = self.setup.home.root.join("captures");
-        while let Some((path, image)) = self.tabs.gallery.decoding.take() {
+        let gallery = &mut self.tabs.gallery;
+        while let Some((path, image)) = gallery.decoding.take() {
+            let (name, linear) = (path.to_string_lossy(), egui::TextureOptions::LINEAR);
             let image = image.ok().flatten();
-            let handle = image.map(|i| {
-                ui.ctx()
-                    .load_texture(path.to_string_lossy(), i, egui::TextureOptions::LINEAR)
-            });
-            self.tabs.gallery.thumbnails.insert(path, handle);
+            let handle = image.map(|i| ui.ctx().load_texture(name, i, linear));
+            gallery.thumbnails.insert(path, handle);
         }
         while let Some(((), text)) = self.tabs.gallery.replays.take() {
             let text = text.unwrap_or_else(|panic| panic);
-            self.event("replayed", serde_json::json!({ "text": text }));
+            self.event("replayed", json!({ "text": text }));
             self.tabs.gallery.replayed = text;
         }
+        let gallery = &mut self.tabs.gallery;
         if ui.small_button("refresh").clicked() {
-            self.tabs.gallery.captures = None;
+            gallery.captures = None;
         }
-        let captures = self
-            .tabs
-            .gallery
+        let captures = gallery
             .captures
-            .get_or_insert_with(|| capture::list(&folder))
-            .clone();
+            .get_or_insert_with(|| capture::list(&folder));
+        let captures = captures.clone();
         if captures.is_empty() {
             ui.weak("none yet");
         }
-        if !self.tabs.gallery.replayed.is_empty() {
-            ui.label(&self.tabs.gallery.replayed);
+        if !gallery.replayed.is_empty() {
+            ui.label(&gallery.replayed);
         }
         egui::ScrollArea::vertical()
             .auto_shrink(false)
@@ -306,73 +283,48 @@ impl Workbench {
             ui.allocate_space(size);
             return;
         };
-        match self.tabs.gallery.thumbnails.get(path) {
+        let gallery = &mut self.tabs.gallery;
+        match gallery.thumbnails.get(path) {
             Some(Some(handle)) => {
                 let image = egui::Image::from_texture((handle.id(), handle.size_vec2()));
                 ui.add(image.max_size(size));
             }
             Some(None) => drop(ui.allocate_space(size)),
             None => {
-                self.tabs.gallery.thumbnails.insert(path.clone(), None);
+                gallery.thumbnails.insert(path.clone(), None);
                 let file = path.clone();
-                self.tabs
-                    .gallery
+                let decode = move || small(&file);
+                gallery
                     .decoding
-                    .start(path.clone(), &self.setup.wake, move || small(&file));
+                    .start(path.clone(), &self.setup.wake, decode);
                 ui.allocate_space(size);
             }
         }
     }
 
     fn capture_row(&mut self, ui: &mut Ui, summary: &Summary) {
-        ui.label(&summary.name);
-        match &summary.manifest {
-            Ok(m) => {
-                ui.weak(format!(
-                    "{} {}x{}",
-                    short(&m.scene.name),
-                    m.size[0],
-                    m.size[1]
-                ))
-                .on_hover_text(format!(
-                    "{}\n{} ({})\nconelab {}",
-                    m.when, m.device, m.driver, m.version
-                ));
-                ui.horizontal(|ui| {
-                    let name = &summary.name;
-                    let load = ui
-                        .small_button("load")
-                        .on_hover_text("Its settings, with the shaders as they are now");
-                    load.widget_info(|| {
-                        egui::WidgetInfo::labeled(
-                            egui::WidgetType::Button,
-                            true,
-                            format!("load {name}"),
-                        )
-                    });
-                    if load.clicked() {
-                        self.load_capture(summary, &m.graph);
-                    }
-                    let replay = ui
-                        .small_button("replay")
-                        .on_hover_text("Render it again from its own sources and compare");
-                    replay.widget_info(|| {
-                        egui::WidgetInfo::labeled(
-                            egui::WidgetType::Button,
-                            true,
-                            format!("replay {name}"),
-                        )
-                    });
-                    if replay.clicked() {
-                        self.replay(&summary.folder);
-                    }
-                });
+        let name = &summary.name;
+        ui.label(name);
+        let m = match &summary.manifest {
+            Ok(manifest) => manifest,
+            Err(why) => return drop(ui.colored_label(RED, "damaged").on_hover_text(why)),
+        };
+        let [w, h] = m.size;
+        ui.weak(format!("{} {w}x{h}", short(&m.scene.name)))
+            .on_hover_text(format!(
+                "{}\n{} ({})\nconelab {}",
+                m.when, m.device, m.driver, m.version
+            ));
+        ui.horizontal(|ui| {
+            let about = "Its settings, with the shaders as they are now";
+            if small_button(ui, "load", &format!("load {name}"), about) {
+                self.load_capture(summary, &m.graph);
             }
-            Err(why) => {
-                ui.colored_label(egui::Color32::from_rgb(255, 110, 90), "damaged")
-                    .on_hover_text(why);
+            let about = "Render it again from its own sources and compare";
+            if small_button(ui, "replay", &format!("replay {name}"), about) {
+                self.replay(&summary.folder);
             }
-        }
+        });
     }
 
     fn load_capture(&mut self, summary: &Summary, graph: &str) {
@@ -395,23 +347,20 @@ impl Workbench {
         self.tabs.gallery.replayed = "replaying".into();
         let folder = folder.to_path_buf();
         let device = self.device.as_ref().map(|d| d.name.clone());
-        self.tabs
-            .gallery
-            .replays
-            .start((), &self.setup.wake, move || {
-                let run = || -> std::io::Result<String> {
-                    let mut command = std::process::Command::new(std::env::current_exe()?);
-                    command.arg("replay").arg(&folder);
-                    if let Some(device) = device {
-                        command.arg("--device").arg(device);
-                    }
-                    let output = command.output()?;
-                    let text = [output.stdout, output.stderr].concat();
-                    Ok(String::from_utf8_lossy(&text).into_owned())
-                };
-                let text = run().unwrap_or_else(|e| format!("cannot replay: {e}"));
-                text.trim().to_string()
-            });
+        let run = move || -> std::io::Result<String> {
+            let mut command = std::process::Command::new(std::env::current_exe()?);
+            command.arg("replay").arg(&folder);
+            if let Some(device) = device {
+                command.arg("--device").arg(device);
+            }
+            let output = command.output()?;
+            let text = [output.stdout, output.stderr].concat();
+            Ok(String::from_utf8_lossy(&text).trim().to_string())
+        };
+        let replays = &mut self.tabs.gallery.replays;
+        replays.start((), &self.setup.wake, move || {
+            run().unwrap_or_else(|e| format!("cannot replay: {e}"))
+        });
     }
 }
 
@@ -419,7 +368,7 @@ impl Workbench {
 fn said(ui: &mut Ui, result: Option<&(bool, String)>) {
     match result {
         Some((true, text)) => drop(ui.weak(text)),
-        Some((false, text)) => drop(ui.colored_label(crate::workbench::messages::RED, text)),
+        Some((false, text)) => drop(ui.colored_label(RED, text)),
         None => {}
     }
 }

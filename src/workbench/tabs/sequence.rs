@@ -6,6 +6,7 @@ use crate::workbench::Workbench;
 use crate::workbench::background::{Background, Wake};
 use crate::workbench::desired::save;
 use crate::workbench::messages::{AMBER, RED};
+use crate::workbench::panel::control::{named, spin};
 use egui::{DragValue, ProgressBar, Ui};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -103,80 +104,16 @@ impl Workbench {
     /// The section.
     pub(super) fn sequence_rows(&mut self, ui: &mut Ui) {
         let sequence = &mut self.tabs.paths.sequence;
-        let idle = sequence.running.is_none();
-        let mut render = false;
-        ui.add_enabled_ui(idle, |ui| {
-            ui.horizontal(|ui| {
-                let frames = DragValue::new(&mut sequence.frames)
-                    .range(1..=100_000)
-                    .suffix(" frames");
-                crate::workbench::panel::control::spin(ui, frames, "frames of the sequence");
-                let rate = DragValue::new(&mut sequence.rate)
-                    .range(1.0..=240.0)
-                    .suffix(" a second");
-                crate::workbench::panel::control::spin(ui, rate, "frames a second");
-            });
-            ui.horizontal(|ui| {
-                let field =
-                    ui.add(egui::TextEdit::singleline(&mut sequence.folder).desired_width(160.0));
-                crate::workbench::panel::control::named(
-                    &field,
-                    egui::WidgetType::TextEdit,
-                    "folder of the sequence",
-                );
-                field.on_hover_text("Folder for frame-00000.png and so on");
-                render = ui.button("render").clicked();
-            });
-        });
-        if let Some(running) = &mut sequence.running {
-            ui.horizontal(|ui| {
-                let part = running.done as f32 / running.frames.max(1) as f32;
-                let text = format!("{} of {} frames", running.done, running.frames);
-                ui.add(ProgressBar::new(part).desired_width(180.0).text(text));
-                let name = if running.cancelled {
-                    "stopping"
-                } else {
-                    "cancel"
-                };
-                let cancel = egui::Button::new(name).small();
-                if ui
-                    .add_enabled(!running.cancelled, cancel)
-                    .on_hover_text("Finished frames stay")
-                    .clicked()
-                {
-                    running.cancel();
-                }
-            });
-            ui.ctx().request_repaint_after(Duration::from_millis(250));
-        } else if let Some((ok, text)) = &sequence.said {
-            match ok {
-                true => ui.weak(text),
-                false => ui.colored_label(
-                    if text.starts_with("cancelled") {
-                        AMBER
-                    } else {
-                        RED
-                    },
-                    text,
-                ),
-            };
-        }
+        let render = sequence.settings(ui);
+        sequence.state(ui);
         if render {
-            self.tabs.paths.sequence.said = match self.start_sequence() {
-                Ok(()) => None,
-                Err(e) => Some((false, e.to_string())),
-            };
+            let result = self.start_sequence();
+            self.tabs.paths.sequence.said = result.err().map(|e| (false, e.to_string()));
         }
     }
 
     /// Starts the command, with files of its own.
     fn start_sequence(&mut self) -> Result<(), LabError> {
-        if let Some(missing) = self.missing_scene() {
-            return Err(LabError::Request(missing));
-        }
-        let (Some(side), Some(info)) = (&self.desired.sides[0], &self.sides[0].info) else {
-            return Err(LabError::Request("no graph has been built yet".into()));
-        };
         let failed = |e: std::io::Error| {
             LabError::Request(format!("cannot write the sequence's settings: {e}"))
         };
@@ -184,37 +121,16 @@ impl Workbench {
             .prefix("conelab-sequence-")
             .tempdir()
             .map_err(failed)?;
-        let side = save::without_pointer(side, info.graph.pointer.as_deref());
-        let mut experiment = save::experiment(
-            &self.desired,
-            &side,
-            "sequence",
-            0.0,
-            self.scene.loaded.as_deref(),
-        );
-        let scene = PathBuf::from(&experiment.scene);
-        if scene.is_file() {
-            experiment.scene = scene
-                .canonicalize()
-                .map_err(failed)?
-                .to_string_lossy()
-                .into_owned();
-        }
         let file = folder.path().join("sequence.ron");
-        crate::experiment::write(&experiment, &info.graph.params, &file, false)?;
+        self.write_settings(&file, failed)?;
         let Sequence { frames, rate, .. } = self.tabs.paths.sequence;
-        let to = self.setup.home.root.join(&self.tabs.paths.sequence.folder);
+        let root = &self.setup.home.root;
+        let to = root.join(&self.tabs.paths.sequence.folder);
         let mut command = Command::new(std::env::current_exe().map_err(failed)?);
-        command
-            .current_dir(&self.setup.home.root)
-            .env("CONELAB_HOME", &self.setup.home.root);
+        command.current_dir(root).env("CONELAB_HOME", root);
         command.arg("render").arg(&file).arg("--sequence").arg(&to);
-        command.args([
-            "--frames",
-            &frames.to_string(),
-            "--step",
-            &(1.0 / rate).to_string(),
-        ]);
+        command.args(["--frames", &frames.to_string()]);
+        command.args(["--step", &(1.0 / rate).to_string()]);
         if !self.tabs.paths.path.keys.is_empty() {
             let path = folder.path().join("path.ron");
             camera_path::write(&self.tabs.paths.path, &path, false)?;
@@ -236,6 +152,80 @@ impl Workbench {
         });
         self.event("sequence begun", serde_json::json!({ "frames": frames }));
         Ok(())
+    }
+
+    /// Writes side A as an experiment.
+    fn write_settings(
+        &self,
+        file: &Path,
+        failed: impl Fn(std::io::Error) -> LabError,
+    ) -> Result<(), LabError> {
+        if let Some(missing) = self.missing_scene() {
+            return Err(LabError::Request(missing));
+        }
+        let (Some(side), Some(info)) = (&self.desired.sides[0], &self.sides[0].info) else {
+            return Err(LabError::Request("no graph has been built yet".into()));
+        };
+        let side = save::without_pointer(side, info.graph.pointer.as_deref());
+        let scene = self.scene.loaded.as_deref();
+        let mut experiment = save::experiment(&self.desired, &side, "sequence", 0.0, scene);
+        let scene = PathBuf::from(&experiment.scene);
+        if scene.is_file() {
+            let path = scene.canonicalize().map_err(failed)?;
+            experiment.scene = path.to_string_lossy().into_owned();
+        }
+        crate::experiment::write(&experiment, &info.graph.params, file, false)?;
+        Ok(())
+    }
+}
+
+impl Sequence {
+    /// The settings of the next sequence. Returns whether it is to be rendered.
+    fn settings(&mut self, ui: &mut Ui) -> bool {
+        let mut render = false;
+        ui.add_enabled_ui(self.running.is_none(), |ui| {
+            ui.horizontal(|ui| {
+                let frames = DragValue::new(&mut self.frames).range(1..=100_000);
+                spin(ui, frames.suffix(" frames"), "frames of the sequence");
+                let rate = DragValue::new(&mut self.rate).range(1.0..=240.0);
+                spin(ui, rate.suffix(" a second"), "frames a second");
+            });
+            ui.horizontal(|ui| {
+                let field = egui::TextEdit::singleline(&mut self.folder).desired_width(160.0);
+                let field = ui.add(field);
+                named(&field, egui::WidgetType::TextEdit, "folder of the sequence");
+                field.on_hover_text("Folder for frame-00000.png and so on");
+                render = ui.button("render").clicked();
+            });
+        });
+        render
+    }
+
+    /// The sequence in work, or how the last one ended.
+    fn state(&mut self, ui: &mut Ui) {
+        if let Some(running) = &mut self.running {
+            ui.horizontal(|ui| {
+                let part = running.done as f32 / running.frames.max(1) as f32;
+                let text = format!("{} of {} frames", running.done, running.frames);
+                ui.add(ProgressBar::new(part).desired_width(180.0).text(text));
+                let name = match running.cancelled {
+                    true => "stopping",
+                    false => "cancel",
+                };
+                let cancel = egui::Button::new(name).small();
+                let cancel = ui.add_enabled(!running.cancelled, cancel);
+                if cancel.on_hover_text("Finished frames stay").clicked() {
+                    running.cancel();
+                }
+            });
+            ui.ctx().request_repaint_after(Duration::from_millis(250));
+        } else if let Some((ok, text)) = &self.said {
+            match ok {
+                true => ui.weak(text),
+                false if text.starts_with("cancelled") => ui.colored_label(AMBER, text),
+                false => ui.colored_label(RED, text),
+            };
+        }
     }
 }
 

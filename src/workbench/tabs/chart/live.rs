@@ -181,17 +181,14 @@ impl super::Chart {
 impl Workbench {
     /// The error to request for A and B.
     fn query(&self) -> ErrorQuery {
-        let (part, bounces) = self
-            .tabs
-            .chart
-            .choice
-            .part_and_bounces(self.tabs.chart.data().map(|d| &**d));
-        let metric = self.tabs.chart.choice.metric;
+        let chart = &self.tabs.chart;
+        let data = chart.data().map(|d| &**d);
+        let (part, bounces) = chart.choice.part_and_bounces(data);
         ErrorQuery {
             part,
-            metric,
+            metric: chart.choice.metric,
             bounces,
-            gathered: self.tabs.chart.live.gathered,
+            gathered: chart.live.gathered,
         }
     }
 
@@ -263,20 +260,12 @@ impl Workbench {
 
     /// Gathers the reference of A's picture.
     pub(super) fn start_gathering(&mut self) {
-        let (Some(side), Some(scene), Some(picture)) = (
-            &self.desired.sides[0],
-            &self.scene.loaded,
-            &self.sides[0].picture,
-        ) else {
+        let (side, picture) = (&self.desired.sides[0], &self.sides[0].picture);
+        let (Some(side), Some(scene), Some(picture)) = (side, &self.scene.loaded, picture) else {
             return;
         };
-        let experiment = save::still(
-            &self.desired,
-            side,
-            &self.experiment.name,
-            picture.time,
-            scene,
-        );
+        let (name, time) = (&self.experiment.name, picture.time);
+        let experiment = save::still(&self.desired, side, name, time, scene);
         self.layout.fixed_size = Some(experiment.size);
         let (bounces, samples) = (self.query().bounces, self.tabs.chart.live.samples);
         let (home, gpu) = (self.setup.home.clone(), self.setup.gpu.clone());
@@ -298,33 +287,31 @@ impl Workbench {
 
     /// Takes in how far the gathering is.
     pub(super) fn poll_gather(&mut self) {
-        let Some(gather) = self.tabs.chart.live.gather.as_mut() else {
+        let live = &mut self.tabs.chart.live;
+        let Some(gather) = &mut live.gather else {
             return;
         };
         let samples = |gather: &Gather| gather.state.map(|s| s.samples);
         let before = samples(gather);
         let result = gather.take();
         let now = samples(gather);
+        if result.is_some()
+            && let Some(gather) = live.gather.take()
+        {
+            live.messages.extend(gather.stop(Duration::from_secs(5)));
+            live.gathered += 1;
+        }
         if now != before {
             self.event("gathers", json!({ "samples": now }));
         }
         let Some(result) = result else { return };
-        let gather = self.tabs.chart.live.gather.take();
-        self.tabs.chart.live.messages.extend(
-            gather
-                .into_iter()
-                .flat_map(|g| g.stop(Duration::from_secs(5))),
-        );
-        self.tabs.chart.live.gathered += 1;
         self.tabs.chart.live.said = match &result {
             Ok(samples) => format!("gathered {samples} samples a pixel"),
             Err(e) => format!("not gathered: {e}"),
         };
-        let (samples, why) = (
-            result.as_ref().ok(),
-            result.as_ref().err().map(ToString::to_string),
-        );
-        self.event("gathered", json!({ "samples": samples, "why": why }));
+        let why = result.as_ref().err().map(ToString::to_string);
+        let fields = json!({ "samples": result.as_ref().ok(), "why": why });
+        self.event("gathered", fields);
     }
 }
 

@@ -17,6 +17,7 @@ use crate::lab::parts_of;
 use crate::metrics::Metric;
 use crate::workbench::Workbench;
 use crate::workbench::engine::report::Report;
+use crate::workbench::messages::RED;
 use crate::workbench::panel::control::named;
 use choice::{Choice, Chosen};
 use egui::{TextureId, Ui};
@@ -88,28 +89,10 @@ impl Workbench {
     fn chart_tab(&mut self, ui: &mut Ui) {
         ui.weak("Error against time, from the path-traced reference: points of a sweep, and the shown picture.");
         self.folder_row(ui);
-        let data = self
-            .tabs
-            .chart
-            .chosen
-            .refresh(self.tabs.chart.folder.as_ref(), &self.tabs.chart.choice);
+        let chart = &mut self.tabs.chart;
+        let data = chart.chosen.refresh(chart.folder.as_ref(), &chart.choice);
         self.choice_row(ui, data.as_deref());
-        let subject = data
-            .as_ref()
-            .and_then(|d| d.keys.get(self.tabs.chart.choice.subject));
-        let now = self.tabs.chart.live.subject();
-        let device = self.device.as_ref().map_or("", |d| d.name.as_str());
-        let mut differences: Vec<String> = match (now, subject) {
-            (Some(now), Some(subject)) => folder::differences(now, device, subject)
-                .into_iter()
-                .map(String::from)
-                .collect(),
-            _ => Vec::new(),
-        };
-        let swept = data
-            .as_ref()
-            .and_then(|d| d.samples.get(self.tabs.chart.choice.subject));
-        differences.extend(swept.and_then(|swept| self.tabs.chart.live.reference_differs(swept)));
+        let differences = self.differences(data.as_deref());
         let title = self.tabs.chart.choice.metric.axis();
         let lives = [0, 1].map(|side| self.tabs.chart.live.dot(side, self.sent.number));
         let height = (ui.available_height() - 150.0).clamp(160.0, 520.0);
@@ -146,100 +129,92 @@ impl Workbench {
         self.log_dots(ui, &data, &drawn.places, &differences);
     }
 
+    /// The differences of the picture from the subject of the sweep.
+    fn differences(&self, data: Option<&Data>) -> Vec<String> {
+        let Chart { live, choice, .. } = &self.tabs.chart;
+        let device = self.device.as_ref().map_or("", |d| d.name.as_str());
+        let subject = data.and_then(|d| d.keys.get(choice.subject));
+        let mut list: Vec<String> = match (live.subject(), subject) {
+            (Some(now), Some(subject)) => folder::differences(now, device, subject)
+                .into_iter()
+                .map(String::from)
+                .collect(),
+            _ => Vec::new(),
+        };
+        let swept = data.and_then(|d| d.samples.get(choice.subject));
+        list.extend(swept.and_then(|swept| live.reference_differs(swept)));
+        list
+    }
+
     fn folder_row(&mut self, ui: &mut Ui) {
-        let folders = self
-            .tabs
-            .chart
-            .folders
-            .get_or_insert_with(|| folder::list(&self.setup.home.root))
-            .clone();
+        let chart = &mut self.tabs.chart;
+        let root = &self.setup.home.root;
+        let folders = chart.folders.get_or_insert_with(|| folder::list(root));
+        let folders = folders.clone();
+        let shown = chart.folder.as_ref().map(|f| f.path.clone());
         let mut chosen = None;
         ui.horizontal(|ui| {
-            let name = self
-                .tabs
-                .chart
-                .folder
-                .as_ref()
-                .map_or("no sweep".into(), |f| folder::name(&f.path));
+            let name = shown.as_deref().map_or("no sweep".into(), folder::name);
             egui::ComboBox::from_id_salt("sweep")
                 .selected_text(format!("sweep: {name}"))
                 .show_ui(ui, |ui| {
                     for path in &folders {
-                        if ui
-                            .selectable_label(folder::name(path) == name, folder::name(path))
-                            .clicked()
-                        {
+                        let other = folder::name(path);
+                        if ui.selectable_label(other == name, other).clicked() {
                             chosen = Some(path.clone());
                         }
                     }
                 });
-            if ui
-                .small_button("refresh")
-                .on_hover_text("Reads captures/sweeps and the sweep again")
-                .clicked()
-            {
-                self.tabs.chart.folders = None;
-                chosen = self.tabs.chart.folder.as_ref().map(|f| f.path.clone());
+            let about = "Reads captures/sweeps and the sweep again";
+            let refresh = ui.small_button("refresh").on_hover_text(about);
+            if refresh.clicked() {
+                chart.folders = None;
+                chosen.clone_from(&shown);
             }
         });
-        if self.tabs.chart.folder.is_none() && chosen.is_none() {
+        if shown.is_none() && chosen.is_none() {
             chosen = folders.first().cloned();
         }
         if let Some(path) = chosen {
-            self.tabs.chart.folder = Some(Folder::open(path, &self.setup.wake));
-            self.tabs.chart.chosen.forget();
-            (self.tabs.chart.choice.subject, self.tabs.chart.by_hand) = (0, false);
+            chart.folder = Some(Folder::open(path, &self.setup.wake));
+            chart.chosen.forget();
+            (chart.choice.subject, chart.by_hand) = (0, false);
         }
-        match self.tabs.chart.folder.as_ref().map(|f| &f.data) {
-            None => {
-                let text = "There is no sweep in captures/sweeps yet: `conelab sweep configs/sweeps/cones.ron` makes one.";
-                ui.weak(text);
-            }
-            Some(None) => {
-                ui.weak("reading");
-            }
-            Some(Some(Err(why))) => {
-                ui.colored_label(egui::Color32::from_rgb(255, 110, 90), why);
-            }
+        match chart.folder.as_ref().map(|f| &f.data) {
+            None => drop(ui.weak(
+                "There is no sweep in captures/sweeps yet: `conelab sweep configs/sweeps/cones.ron` makes one.",
+            )),
+            Some(None) => drop(ui.weak("reading")),
+            Some(Some(Err(why))) => drop(ui.colored_label(RED, why)),
             Some(Some(Ok(_))) => {}
         }
     }
 
     fn choice_row(&mut self, ui: &mut Ui, data: Option<&Data>) {
+        let chart = &mut self.tabs.chart;
+        let choice = &mut chart.choice;
         // The subject of the chart: the chosen one, else the picture's.
-        if let (Some(data), Some(now), false) = (
-            data,
-            self.tabs.chart.live.subject(),
-            self.tabs.chart.by_hand,
-        ) {
+        if let (Some(data), Some(now), false) = (data, chart.live.subject(), chart.by_hand) {
             let device = self.device.as_ref().map_or("", |d| d.name.as_str());
             let fits = |key: &_| folder::differences(now, device, key).is_empty();
-            self.tabs.chart.choice.subject = data
-                .keys
-                .iter()
-                .position(fits)
-                .unwrap_or(self.tabs.chart.choice.subject);
+            let place = data.keys.iter().position(fits);
+            choice.subject = place.unwrap_or(choice.subject);
         }
         let graph = self.sides[0].info.as_ref().map(|info| &info.graph);
         let own = graph.map_or(Vec::new(), |graph| {
             parts_of(graph).into_iter().map(|p| p.name).collect()
         });
-        let choice = &mut self.tabs.chart.choice;
+        let parts = data.map(|d| &d.parts).filter(|p| !p.is_empty());
         ui.horizontal_wrapped(|ui| {
             egui::ComboBox::from_id_salt("part")
                 .selected_text(format!("part: {}", choice.part))
                 .show_ui(ui, |ui| {
-                    for part in data
-                        .map(|d| &d.parts)
-                        .filter(|p| !p.is_empty())
-                        .unwrap_or(&own)
-                    {
+                    for part in parts.unwrap_or(&own) {
                         ui.selectable_value(&mut choice.part, part.clone(), part);
                     }
                 });
-            let title = choice.metric.axis();
             egui::ComboBox::from_id_salt("metric")
-                .selected_text(format!("error: {title}"))
+                .selected_text(format!("error: {}", choice.metric.axis()))
                 .show_ui(ui, |ui| {
                     for metric in Metric::ranking() {
                         ui.selectable_value(&mut choice.metric, metric, metric.axis());
@@ -249,15 +224,12 @@ impl Workbench {
         let Some(data) = data.filter(|d| d.subjects.len() > 1) else {
             return;
         };
-        let name = |i: usize| data.subjects.get(i).cloned().unwrap_or_default();
-        let menu = egui::ComboBox::from_id_salt("subject")
-            .selected_text(name(choice.subject))
-            .width(280.0);
-        let menu = menu.show_ui(ui, |ui| {
+        let name = |i: usize| data.subjects.get(i).map_or("", String::as_str);
+        let menu = egui::ComboBox::from_id_salt("subject").selected_text(name(choice.subject));
+        let menu = menu.width(280.0).show_ui(ui, |ui| {
             for i in 0..data.subjects.len() {
-                self.tabs.chart.by_hand |= ui
-                    .selectable_value(&mut choice.subject, i, name(i))
-                    .clicked();
+                let row = ui.selectable_value(&mut choice.subject, i, name(i));
+                chart.by_hand |= row.clicked();
             }
         });
         named(

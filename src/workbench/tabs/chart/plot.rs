@@ -5,7 +5,7 @@ use super::choice::Chosen;
 use crate::campaign::charts::ticks;
 use crate::results::table::short;
 use egui::{Color32, Pos2, Ui};
-use egui_plot::{GridInput, GridMark, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points};
+use egui_plot::{GridInput, GridMark, Line, MarkerShape, Plot, PlotPoint, PlotUi, Points};
 
 const DOT: Color32 = Color32::from_rgb(120, 160, 215);
 const FRONT: Color32 = Color32::from_rgb(235, 100, 80);
@@ -54,42 +54,35 @@ pub struct Drawn {
     pub response: egui::Response,
 }
 
+impl Shown<'_> {
+    /// The error that is drawn at the bottom, a tenth below the others: a perfect point has no
+    /// logarithm.
+    fn bottom(&self) -> f64 {
+        let dots = self.chosen.dots.iter().map(|d| d.error);
+        let lives = self.live.iter().flatten().map(|l| l.error);
+        let errors = dots.chain(lives).filter(|e| *e > 0.0);
+        errors.fold(f64::INFINITY, f64::min).min(1.0) / 10.0
+    }
+
+    fn color(&self, color: Color32) -> Color32 {
+        match self.fits {
+            true => color,
+            false => color.gamma_multiply(0.4),
+        }
+    }
+}
+
 /// Draws the chart. `name` tells charts apart: each keeps its own view.
 pub fn show(ui: &mut Ui, name: &str, height: f32, shown: &Shown<'_>) -> Drawn {
-    let lives = || shown.live.iter().flatten();
-    // A perfect point has no logarithm: it is drawn at the bottom, a tenth below the others.
-    let errors = shown
-        .chosen
-        .dots
-        .iter()
-        .map(|d| d.error)
-        .chain(lives().map(|l| l.error));
-    let least = errors
-        .filter(|e| *e > 0.0)
-        .fold(f64::INFINITY, f64::min)
-        .min(1.0)
-        / 10.0;
-    let place = |ms: f64, error: f64| [ms.log10(), error.max(least).log10()];
-    let dots: Vec<[f64; 2]> = shown
-        .chosen
-        .dots
-        .iter()
-        .map(|d| place(d.ms, d.error))
-        .collect();
-    let dim = |color: Color32| {
-        if shown.fits {
-            color
-        } else {
-            color.gamma_multiply(0.4)
-        }
-    };
-
-    let title = format!("{} (log)", shown.title);
+    let bottom = shown.bottom();
+    let place = |ms: f64, error: f64| [ms.log10(), error.max(bottom).log10()];
+    let scored = &shown.chosen.dots;
+    let dots: Vec<[f64; 2]> = scored.iter().map(|d| place(d.ms, d.error)).collect();
     let plot = Plot::new(("error against time", name))
         .height(height)
         .set_margin_fraction(egui::vec2(0.08, 0.1))
         .x_axis_label("GPU time of a frame, ms (log)")
-        .y_axis_label(title)
+        .y_axis_label(format!("{} (log)", shown.title))
         .x_grid_spacer(|input| marks(input, 36.0))
         .y_grid_spacer(|input| marks(input, 14.0))
         .x_axis_formatter(|mark, _| short(10f64.powf(mark.value)))
@@ -99,59 +92,12 @@ pub fn show(ui: &mut Ui, name: &str, height: f32, shown: &Shown<'_>) -> Drawn {
         .grid_color(ui.visuals().weak_text_color().gamma_multiply(0.35))
         .grid_spacing(LEAST..=60.0);
     let response = plot.show(ui, |plot| {
-        let mut steps: Vec<[f64; 2]> = Vec::new();
-        for i in &shown.chosen.front {
-            let at = dots[*i];
-            steps.extend(steps.last().map(|last| [at[0], last[1]]));
-            steps.push(at);
-        }
-        plot.line(
-            Line::new("Pareto front", steps)
-                .color(dim(FRONT))
-                .width(1.0)
-                .allow_hover(false),
-        );
-        let part = |wanted: bool, noisy: bool| -> PlotPoints<'static> {
-            let fits = |i: &usize| {
-                shown.chosen.on_front[*i] == wanted && shown.chosen.dots[*i].noisy == noisy
-            };
-            (0..dots.len())
-                .filter(fits)
-                .map(|i| dots[i])
-                .collect::<Vec<_>>()
-                .into()
-        };
-        for (wanted, color, radius) in [(false, DOT, 3.0), (true, FRONT, 4.0)] {
-            for noisy in [false, true] {
-                let points = Points::new("points", part(wanted, noisy))
-                    .color(dim(color))
-                    .radius(radius);
-                plot.points(points.filled(!noisy).allow_hover(false));
-            }
-        }
+        draw_dots(plot, shown, &dots);
         for (live, color) in shown.live.iter().zip(LIVE) {
-            let Some(live) = live else { continue };
-            let at = place(live.ms, live.error);
-            let mut trail: Vec<[f64; 2]> = live.trail.iter().map(|p| place(p.0, p.1)).collect();
-            trail.push(at);
-            let faint = color.gamma_multiply(0.45);
-            plot.points(
-                Points::new("trail", trail.clone())
-                    .color(faint)
-                    .radius(2.0)
-                    .allow_hover(false),
-            );
-            plot.line(
-                Line::new("trail", trail)
-                    .color(faint)
-                    .width(1.0)
-                    .allow_hover(false),
-            );
-            let marker = Points::new("live", vec![at])
-                .shape(MarkerShape::Diamond)
-                .color(color)
-                .radius(8.0);
-            plot.points(marker.filled(live.fresh).allow_hover(false));
+            if let Some(live) = live {
+                let trail = live.trail.iter().map(|p| place(p.0, p.1)).collect();
+                draw_live(plot, trail, place(live.ms, live.error), color, live.fresh);
+            }
         }
     });
     let transform = response.transform;
@@ -172,6 +118,47 @@ pub fn show(ui: &mut Ui, name: &str, height: f32, shown: &Shown<'_>) -> Drawn {
         hovered,
         response: response.response,
     }
+}
+
+/// Draws the Pareto front, and the dots: those on it over the others, noisy ones hollow.
+fn draw_dots(plot: &mut PlotUi<'_>, shown: &Shown<'_>, dots: &[[f64; 2]]) {
+    let chosen = shown.chosen;
+    let mut steps: Vec<[f64; 2]> = Vec::new();
+    for i in &chosen.front {
+        let at = dots[*i];
+        steps.extend(steps.last().map(|last| [at[0], last[1]]));
+        steps.push(at);
+    }
+    let front = Line::new("Pareto front", steps).color(shown.color(FRONT));
+    plot.line(front.width(1.0).allow_hover(false));
+    for (on_front, color, radius) in [(false, DOT, 3.0), (true, FRONT, 4.0)] {
+        for noisy in [false, true] {
+            let fits =
+                |i: &usize| chosen.on_front[*i] == on_front && chosen.dots[*i].noisy == noisy;
+            let part: Vec<[f64; 2]> = (0..dots.len()).filter(fits).map(|i| dots[i]).collect();
+            let points = Points::new("points", part).color(shown.color(color));
+            plot.points(points.radius(radius).filled(!noisy).allow_hover(false));
+        }
+    }
+}
+
+/// Draws the dot of the workbench with its trail; hollow if its error is of another picture.
+fn draw_live(
+    plot: &mut PlotUi<'_>,
+    mut trail: Vec<[f64; 2]>,
+    at: [f64; 2],
+    color: Color32,
+    fresh: bool,
+) {
+    trail.push(at);
+    let faint = color.gamma_multiply(0.45);
+    let points = Points::new("trail", trail.clone()).color(faint);
+    plot.points(points.radius(2.0).allow_hover(false));
+    let line = Line::new("trail", trail).color(faint);
+    plot.line(line.width(1.0).allow_hover(false));
+    let marker = Points::new("live", vec![at]).shape(MarkerShape::Diamond);
+    let marker = marker.color(color).radius(8.0).filled(fresh);
+    plot.points(marker.allow_hover(false));
 }
 
 /// Round numbers in a range of logarithms. Numbers with enough room have labels.

@@ -2,6 +2,7 @@
 
 use super::plot::{LIVE, Live};
 use crate::workbench::Workbench;
+use crate::workbench::engine::error_worker::ErrorResult;
 use crate::workbench::panel::control::spin;
 use egui::{Button, DragValue, ProgressBar, Ui};
 use std::time::Duration;
@@ -10,67 +11,67 @@ impl Workbench {
     /// Results of A and B, and actions for missing ones.
     pub(super) fn live_rows(&mut self, ui: &mut Ui, title: &str, lives: &[Option<Live>; 2]) {
         let mut missing = false;
-        for (side, live) in lives
-            .iter()
-            .enumerate()
-            .filter(|s| self.desired.sides[s.0].is_some())
-        {
-            let state = &self.tabs.chart.live.sides[side];
-            let name = ["A", "B"][side];
-            match state.error.as_ref().map(|j| (&j.query, &j.result)) {
-                None if self.desired.clock.playing => drop(ui.weak(format!(
-                    "{name}: its error is measured when time stands still"
-                ))),
-                None if state.is_asked() => {
-                    drop(ui.weak(format!("{name}: its error is being measured")))
-                }
-                None => drop(ui.weak(format!(
-                    "{name}: its error is measured once the picture stands still"
-                ))),
-                Some((_, Err(why))) => drop(ui.weak(format!("{name}: {why}"))),
-                Some((query, Ok(measured))) => match (&measured.error, live) {
-                    (Some(error), Some(live)) => {
-                        let old = if live.fresh {
-                            ""
-                        } else {
-                            " (of the picture before)"
-                        };
-                        let noisy = query.metric.within(error.error, error.noise);
-                        let noisy = if noisy {
-                            ", within the reference's noise"
-                        } else {
-                            ""
-                        };
-                        let text = format!(
-                            "{name}: {:.3} ms, {title} {:.4e}{noisy}{old}",
-                            live.ms, error.error
-                        );
-                        ui.colored_label(LIVE[side], text).on_hover_text(format!(
-                            "Median of {} frames since the last change; `keep rendering` measures on. Reference: \
-                                 {}, {} samples a pixel; relMSE of its halves {:.2e}.",
-                            state.times.len(),
-                            bounces(query.bounces),
-                            error.samples,
-                            error.noise.relmse
-                        ));
-                    }
-                    (Some(_), None) => {
-                        drop(ui.weak(format!("{name}: the metric is not defined here")))
-                    }
-                    (None, _) => {
-                        missing = true;
-                        let (w, h) = measured.subject.size;
-                        ui.label(format!(
-                            "{name}: no reference of this picture yet ({}, {w}x{h}, {})",
-                            measured.subject.scene,
-                            bounces(query.bounces)
-                        ));
-                    }
-                },
+        for (side, live) in lives.iter().enumerate() {
+            if self.desired.sides[side].is_some() {
+                missing |= self.live_row(ui, title, side, live.as_ref());
             }
         }
         self.gather_row(ui, missing);
         self.size_row(ui);
+    }
+
+    /// The result of a side. Returns whether its reference is missing.
+    fn live_row(&self, ui: &mut Ui, title: &str, side: usize, live: Option<&Live>) -> bool {
+        let state = &self.tabs.chart.live.sides[side];
+        let name = ["A", "B"][side];
+        let Some(ErrorResult { query, result, .. }) = &state.error else {
+            let when = match () {
+                () if self.desired.clock.playing => "is measured when time stands still",
+                () if state.is_asked() => "is being measured",
+                () => "is measured once the picture stands still",
+            };
+            ui.weak(format!("{name}: its error {when}"));
+            return false;
+        };
+        let measured = match result {
+            Ok(measured) => measured,
+            Err(why) => {
+                ui.weak(format!("{name}: {why}"));
+                return false;
+            }
+        };
+        let bounces = bounces(query.bounces);
+        let Some(error) = &measured.error else {
+            let (w, h) = measured.subject.size;
+            ui.label(format!(
+                "{name}: no reference of this picture yet ({}, {w}x{h}, {bounces})",
+                measured.subject.scene,
+            ));
+            return true;
+        };
+        let Some(live) = live else {
+            ui.weak(format!("{name}: the metric is not defined here"));
+            return false;
+        };
+        let noisy = match query.metric.within(error.error, error.noise) {
+            true => ", within the reference's noise",
+            false => "",
+        };
+        let old = if live.fresh {
+            ""
+        } else {
+            " (of the picture before)"
+        };
+        let (ms, value) = (live.ms, error.error);
+        let text = format!("{name}: {ms:.3} ms, {title} {value:.4e}{noisy}{old}");
+        ui.colored_label(LIVE[side], text).on_hover_text(format!(
+            "Median of {} frames since the last change; `keep rendering` measures on. Reference: \
+             {bounces}, {} samples a pixel; relMSE of its halves {:.2e}.",
+            state.times.len(),
+            error.samples,
+            error.noise.relmse
+        ));
+        false
     }
 
     fn gather_row(&mut self, ui: &mut Ui, missing: bool) {

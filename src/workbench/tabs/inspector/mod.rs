@@ -229,77 +229,23 @@ impl Workbench {
         if !names.contains(&self.tabs.inspector.target.texture.as_str()) {
             let preferred = info.graph.hdr.as_deref().or(info.graph.output.as_deref());
             let name = preferred.or(names.first().copied())?.to_string();
-            self.tabs
-                .inspector
-                .open(self.tabs.inspector.target.side, name);
+            let inspector = &mut self.tabs.inspector;
+            inspector.open(inspector.target.side, name);
         }
-        let mut chosen = None;
-        let box_ = egui::ComboBox::from_id_salt("texture").width(ui.available_width() - 8.0);
-        let label = describe(info, &self.tabs.inspector.target.texture);
-        let menu = box_.height(500.0).selected_text(label).show_ui(ui, |ui| {
-            for name in &names {
-                if ui
-                    .selectable_label(
-                        *name == self.tabs.inspector.target.texture,
-                        describe(info, name),
-                    )
-                    .clicked()
-                {
-                    chosen = Some((*name).to_string());
-                }
-            }
-        });
-        let shown = format!("texture {}", self.tabs.inspector.target.texture);
-        named(&menu.response, egui::WidgetType::ComboBox, &shown);
-        if let Some(name) = chosen {
-            self.tabs
-                .inspector
-                .open(self.tabs.inspector.target.side, name);
-        }
-        let target = &mut self.tabs.inspector.target;
+        self.texture_menu(ui, info, &names);
+        let inspector = &mut self.tabs.inspector;
+        let target = &mut inspector.target;
         let index = info.graph.texture(&target.texture)?;
         let help = &info.graph.textures[index].1.value.help;
         if !help.is_empty() {
             ui.weak(help);
         }
         let plan = info.textures.get(index)?.clone();
-        let last = |n: u32| n.saturating_sub(1);
-        target.mip = target.mip.min(last(plan.mips));
-        target.layer = target.layer.min(last(plan.layers));
-        if plan.mips > 1 {
-            let old = target.mip;
-            ui.add(Slider::new(&mut target.mip, 0..=last(plan.mips)).text("mip"));
-            // The same place of the volume.
-            target.slice = if target.mip > old {
-                target.slice >> (target.mip - old)
-            } else {
-                target.slice << (old - target.mip)
-            };
-        }
-        if plan.layers > 1 {
-            ui.add(Slider::new(&mut target.layer, 0..=last(plan.layers)).text("layer"));
-        }
-        if plan.volume {
-            ui.horizontal(|ui| {
-                ui.label("cut across");
-                for (axis, name) in ["x", "y", "z"].iter().enumerate() {
-                    ui.selectable_value(&mut target.axis, axis, *name);
-                }
-            });
-            let size = (plan.extent[target.axis.min(2)] >> target.mip.min(31)).max(1);
-            if target.slice >= size {
-                target.slice = size / 2;
-            }
-            ui.add(Slider::new(&mut target.slice, 0..=size - 1).text("slice"));
-        }
-        let waits = self
-            .tabs
-            .inspector
-            .shown
-            .as_ref()
-            .is_none_or(|s| s.decoded.target != self.tabs.inspector.target);
+        choose_part(ui, &plan, target);
+        let shown = inspector.shown.as_ref();
+        let waits = shown.is_none_or(|s| s.decoded.target != *target);
         ui.horizontal(|ui| {
-            ui.checkbox(&mut self.tabs.inspector.in_viewport, "in the viewport")
+            ui.checkbox(&mut inspector.in_viewport, "in the viewport")
                 .on_hover_text("Where the render is; else below");
             if waits && plan.usage.is_empty() {
                 ui.weak("not made yet: no pass that runs uses it");
@@ -308,6 +254,27 @@ impl Workbench {
             }
         });
         Some(plan)
+    }
+
+    fn texture_menu(&mut self, ui: &mut Ui, info: &GraphInfo, names: &[&str]) {
+        let inspector = &mut self.tabs.inspector;
+        let shown = inspector.target.texture.clone();
+        let mut chosen = None;
+        let menu = egui::ComboBox::from_id_salt("texture").width(ui.available_width() - 8.0);
+        let menu = menu.height(500.0).selected_text(describe(info, &shown));
+        let menu = menu.show_ui(ui, |ui| {
+            for name in names {
+                let row = ui.selectable_label(*name == shown, describe(info, name));
+                if row.clicked() {
+                    chosen = Some((*name).to_string());
+                }
+            }
+        });
+        let label = format!("texture {shown}");
+        named(&menu.response, egui::WidgetType::ComboBox, &label);
+        if let Some(name) = chosen {
+            inspector.open(inspector.target.side, name);
+        }
     }
 
     fn tones(&mut self, ui: &mut Ui, plan: &TexturePlan) {
@@ -399,6 +366,39 @@ impl Workbench {
                     ui.end_row();
                 }
             });
+    }
+}
+
+/// Mip, layer or slice of a texture.
+fn choose_part(ui: &mut Ui, plan: &TexturePlan, target: &mut InspectTarget) {
+    let last = |n: u32| n.saturating_sub(1);
+    target.mip = target.mip.min(last(plan.mips));
+    target.layer = target.layer.min(last(plan.layers));
+    if plan.mips > 1 {
+        let old = target.mip;
+        ui.add(Slider::new(&mut target.mip, 0..=last(plan.mips)).text("mip"));
+        // The same place of the volume.
+        target.slice = if target.mip > old {
+            target.slice >> (target.mip - old)
+        } else {
+            target.slice << (old - target.mip)
+        };
+    }
+    if plan.layers > 1 {
+        ui.add(Slider::new(&mut target.layer, 0..=last(plan.layers)).text("layer"));
+    }
+    if plan.volume {
+        ui.horizontal(|ui| {
+            ui.label("cut across");
+            for (axis, name) in ["x", "y", "z"].iter().enumerate() {
+                ui.selectable_value(&mut target.axis, axis, *name);
+            }
+        });
+        let size = (plan.extent[target.axis.min(2)] >> target.mip.min(31)).max(1);
+        if target.slice >= size {
+            target.slice = size / 2;
+        }
+        ui.add(Slider::new(&mut target.slice, 0..=size - 1).text("slice"));
     }
 }
 

@@ -14,6 +14,43 @@ pub struct PanZoom {
     centre: Vec2,
 }
 
+impl PanZoom {
+    /// The place of a texture of this size [texels]. `fitting`: the zoom at which all is seen.
+    fn place(&self, area: Rect, size: Vec2, fitting: f32, scale: f32) -> Rect {
+        let texel = self.zoom.unwrap_or(fitting) / scale;
+        let min = area.center() - (size / 2.0 + self.centre) * texel;
+        // On whole pixels of the screen.
+        let min = (min.to_vec2() * scale).round() / scale;
+        Rect::from_min_size(min.to_pos2(), size * texel)
+    }
+
+    fn steer(&mut self, ui: &Ui, response: &egui::Response, size: Vec2, fitting: f32) {
+        let (area, scale) = (response.rect, ui.ctx().pixels_per_point());
+        if response.double_clicked() {
+            *self = PanZoom::default();
+        }
+        let pointer = response.hover_pos();
+        let wheel = match pointer {
+            Some(_) => ui.input(|i| i.smooth_scroll_delta().y),
+            None => 0.0,
+        };
+        let notch = notch(ui, wheel);
+        if let Some(at) = pointer.filter(|_| notch != 0) {
+            let old = self.place(area, size, fitting, scale);
+            let under = (at - old.min) / old.size() * size;
+            let zoom = step(self.zoom.unwrap_or(fitting), notch > 0);
+            self.zoom = Some(zoom);
+            // The texel under the pointer stays there.
+            self.centre = under - size / 2.0 - (at - area.center()) * scale / zoom;
+        }
+        if response.dragged() {
+            let zoom = *self.zoom.get_or_insert(fitting);
+            self.centre -= response.drag_delta() * scale / zoom;
+        }
+        self.centre = self.centre.clamp(-size / 2.0, size / 2.0);
+    }
+}
+
 /// Steps of size. Whole texels or whole pixels, so that no texel looks wider than another.
 const STEPS: [f32; 14] = [
     0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0, 64.0,
@@ -49,47 +86,16 @@ impl Workbench {
             done.decoded.size[0].max(1) as f32,
             done.decoded.size[1].max(1) as f32,
         );
-        let pan_zoom = &mut self.tabs.inspector.pan_zoom;
         let fitting = view::fit(area, done.decoded.size, scale).width() * scale / size.x;
-        let rect = |pan_zoom: &PanZoom| {
-            let texel = pan_zoom.zoom.unwrap_or(fitting) / scale;
-            let min = area.center() - (size / 2.0 + pan_zoom.centre) * texel;
-            let min = Pos2::new(
-                (min.x * scale).round() / scale,
-                (min.y * scale).round() / scale,
-            );
-            Rect::from_min_size(min, size * texel)
-        };
-        if response.double_clicked() {
-            *pan_zoom = PanZoom::default();
-        }
-        let pointer = response.hover_pos();
-        let wheel = if pointer.is_some() {
-            ui.input(|i| i.smooth_scroll_delta().y)
-        } else {
-            0.0
-        };
-        let notch = notch(ui, wheel);
-        if let Some(at) = pointer.filter(|_| notch != 0) {
-            let old = rect(pan_zoom);
-            let under = (at - old.min) / old.size() * size;
-            let zoom = step(pan_zoom.zoom.unwrap_or(fitting), notch > 0);
-            pan_zoom.zoom = Some(zoom);
-            // The texel under the pointer stays there.
-            pan_zoom.centre = under - size / 2.0 - (at - area.center()) * scale / zoom;
-        }
-        if response.dragged() {
-            let zoom = *pan_zoom.zoom.get_or_insert(fitting);
-            pan_zoom.centre -= response.drag_delta() * scale / zoom;
-        }
-        pan_zoom.centre = pan_zoom.centre.clamp(-size / 2.0, size / 2.0);
-        let shown = rect(pan_zoom);
+        let pan_zoom = &mut self.tabs.inspector.pan_zoom;
+        pan_zoom.steer(ui, &response, size, fitting);
+        let shown = pan_zoom.place(area, size, fitting, scale);
         let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         if let Some(texture) = textures.get(INSPECTOR) {
             painter.image(*texture, shown, whole, Color32::WHITE);
         }
         let texel = shown.width() / size.x;
-        self.under_pointer(&painter, pointer, shown, texel);
+        self.under_pointer(&painter, response.hover_pos(), shown, texel);
         // The shown texture, because the requested one may follow.
         let target = &done.decoded.target;
         let name = format!(

@@ -29,33 +29,24 @@ impl Workbench {
         let mut chosen = None;
         let mut back = false;
         ui.horizontal_wrapped(|ui| {
-            for (i, view) in info.graph.views.iter().enumerate() {
-                if ui
-                    .button(&view.value.title)
-                    .on_hover_text(&view.value.help)
-                    .clicked()
-                {
-                    chosen = Some(i);
+            for view in info.graph.views.iter().map(|v| &v.value) {
+                if ui.button(&view.title).on_hover_text(&view.help).clicked() {
+                    chosen = Some(view);
                 }
             }
             let before = egui::Button::new("back");
+            let before = ui.add_enabled(!self.tabs.inspector.before.is_empty(), before);
             let about = "Restores the parameters and shows the texture again";
-            back = ui
-                .add_enabled(!self.tabs.inspector.before.is_empty(), before)
-                .on_hover_text(about)
-                .clicked();
+            back = before.on_hover_text(about).clicked();
         });
         ui.separator();
         if back {
             self.leave_view();
         }
-        let Some(view) = chosen.and_then(|i| info.graph.views.get(i)) else {
+        let (Some(view), Some(desired)) = (chosen, &mut self.desired.sides[side]) else {
             return;
         };
-        let Some(desired) = self.desired.sides[side].as_mut() else {
-            return;
-        };
-        for (name, text) in &view.value.set.0 {
+        for (name, text) in &view.set.0 {
             let Some(param) = info.graph.params.param(&name.value) else {
                 continue;
             };
@@ -64,11 +55,8 @@ impl Workbench {
             };
             let before = &mut self.tabs.inspector.before.0;
             if !before.iter().any(|b| b.0 == side && b.1 == name.value) {
-                let old = desired
-                    .params
-                    .iter()
-                    .find(|p| p.0 == name.value)
-                    .map(|p| p.1.clone());
+                let old = desired.params.iter().find(|p| p.0 == name.value);
+                let old = old.map(|p| p.1.clone());
                 before.push((side, name.value.clone(), old));
             }
             edit::set(desired, param, &value);

@@ -5,7 +5,7 @@ mod layout;
 use super::Tab;
 use crate::workbench::Workbench;
 use crate::workbench::desired::edit;
-use crate::workbench::engine::report::GraphInfo;
+use crate::workbench::engine::report::{GraphInfo, PassUses};
 use crate::workbench::panel::control::named;
 use crate::workbench::panel::folded;
 use egui::{
@@ -45,6 +45,49 @@ struct Seen {
     zoom: f32,
     /// The point at the upper left.
     corner: Pos2,
+}
+
+impl Seen {
+    fn whole(bounds: Rect, area: Rect) -> Seen {
+        let fit = (area.width() / bounds.width()).min(area.height() / bounds.height());
+        Seen {
+            zoom: fit.clamp(0.1, 1.0),
+            corner: bounds.min,
+        }
+    }
+}
+
+/// The part that is seen after dragging, zooming, or going to a point.
+fn steered(
+    ui: &Ui,
+    response: &egui::Response,
+    mut seen: Option<Seen>,
+    whole: Seen,
+    go: Option<Pos2>,
+) -> Option<Seen> {
+    let area = response.rect;
+    let mut now = seen.unwrap_or(whole);
+    if let Some(center) = go {
+        // Large enough to be read.
+        now.zoom = now.zoom.max(0.8);
+        now.corner = center - 0.5 * area.size() / now.zoom;
+        seen = Some(now);
+    }
+    if response.dragged() {
+        now.corner -= response.drag_delta() / now.zoom;
+        seen = Some(now);
+    }
+    let wheel = match response.contains_pointer() {
+        true => ui.input(|i| i.smooth_scroll_delta().y),
+        false => 0.0,
+    };
+    if let (Some(at), true) = (response.hover_pos(), wheel != 0.0) {
+        let zoom = stepped(now.zoom * (wheel * 0.01).exp()).clamp(0.2, 2.0);
+        now.corner += (at - area.min) * (1.0 / now.zoom - 1.0 / zoom);
+        now.zoom = zoom;
+        seen = Some(now);
+    }
+    seen.filter(|_| !response.double_clicked())
 }
 
 /// The chosen action on a pass.
@@ -102,55 +145,25 @@ impl Workbench {
             .tabs
             .times
             .means(ui.ctx(), side, self.desired.sides[1].is_some());
-        let chosen = self.tabs.nodes.chosen.clone();
+        let nodes = &mut self.tabs.nodes;
+        let chosen = nodes.chosen.clone();
         let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
         let area = response.rect;
         ui.painter().rect_filled(area, 0.0, Color32::from_gray(12));
-        self.tabs.nodes.area = area.size();
-        let (mut seen, go) = (
-            self.tabs.nodes.seen,
-            std::mem::take(&mut self.tabs.nodes.go),
-        );
-        let layout = self.tabs.nodes.layout(&info);
-        let bounds = layout.bounds();
-        let fit = (area.width() / bounds.width()).min(area.height() / bounds.height());
-        let whole = Seen {
-            zoom: fit.clamp(0.1, 1.0),
-            corner: bounds.min,
-        };
-        let mut now = seen.unwrap_or(whole);
-        if let Some(node) = layout
+        nodes.area = area.size();
+        let (seen, go) = (nodes.seen, std::mem::take(&mut nodes.go));
+        let layout = nodes.layout(&info);
+        let node = layout
             .nodes
             .iter()
-            .find(|n| go && chosen.as_ref() == Some(&n.name))
-        {
-            // Large enough to be read.
-            now.zoom = now.zoom.max(0.8);
-            now.corner = node.rect.center() - 0.5 * area.size() / now.zoom;
-            seen = Some(now);
-        }
-        if response.dragged() {
-            now.corner -= response.drag_delta() / now.zoom;
-            seen = Some(now);
-        }
-        let wheel = if response.contains_pointer() {
-            ui.input(|i| i.smooth_scroll_delta().y)
-        } else {
-            0.0
-        };
-        if let (Some(at), true) = (response.hover_pos(), wheel != 0.0) {
-            let zoom = stepped(now.zoom * (wheel * 0.01).exp()).clamp(0.2, 2.0);
-            now.corner += (at - area.min) * (1.0 / now.zoom - 1.0 / zoom);
-            now.zoom = zoom;
-            seen = Some(now);
-        }
-        if response.double_clicked() {
-            (now, seen) = (whole, None);
-        }
+            .find(|n| Some(&n.name) == chosen.as_ref());
+        let go = node.filter(|_| go).map(|n| n.rect.center());
+        let whole = Seen::whole(layout.bounds(), area);
+        let seen = steered(ui, &response, seen, whole, go);
         let mut canvas = Canvas {
             ui,
             area,
-            seen: now,
+            seen: seen.unwrap_or(whole),
             asked: None,
         };
         canvas.draw(&info, layout, &times.passes, chosen.as_deref());
@@ -181,35 +194,16 @@ impl Workbench {
             return;
         };
         let mut off = desired.off.clone();
-        let before = off.clone();
         self.graph_bar(ui);
-        if !off.is_empty() {
-            ui.colored_label(
-                ui.visuals().warn_fg_color,
-                format!("off: {}", off.join(", ")),
-            );
-            for (name, readers) in zeros(&info) {
-                ui.colored_label(
-                    ui.visuals().warn_fg_color,
-                    format!("{name} is zeros now: {readers} read it"),
-                );
-            }
-            if ui.button("all passes on").clicked() {
-                off.clear();
-            }
-        }
+        passes_off(ui, &info, &mut off);
         ui.separator();
         let mut needed = None;
         egui::ScrollArea::vertical()
             .auto_shrink(false)
             .show(ui, |ui| {
-                let name = self
-                    .tabs
-                    .nodes
-                    .chosen
-                    .clone()
-                    .filter(|_| self.tabs.nodes.search.is_empty());
-                match name {
+                let nodes = &self.tabs.nodes;
+                let name = nodes.chosen.clone();
+                match name.filter(|_| nodes.search.is_empty()) {
                     Some(name) => needed = self.chosen_pass(ui, side, &info, &name, &mut off),
                     None => self.pass_list(ui, side, &info),
                 }
@@ -223,9 +217,7 @@ impl Workbench {
         {
             edit::set(desired, param, &value);
         }
-        if off != before {
-            desired.off = off;
-        }
+        desired.off = off;
     }
 
     /// What of the graph is seen.
@@ -272,42 +264,23 @@ impl Workbench {
         let mut found = None;
         for (number, pass) in info.graph.passes.iter().enumerate() {
             let name = &pass.value.name.value;
-            let writes = info
-                .uses
-                .iter()
-                .find(|u| u.pass == number)
-                .map_or(&[][..], |u| &u.writes);
-            if !folded(name).contains(&needle)
-                && !writes.iter().any(|w| folded(w).contains(&needle))
-            {
+            let uses = info.uses.iter().filter(|u| u.pass == number);
+            let mut names = uses.flat_map(|u| &u.writes).chain([name]);
+            if !names.any(|name| folded(name).contains(&needle)) {
                 continue;
             }
-            let ms = times.passes.iter().find(|t| t.0 == number).map(|t| t.1);
-            let why = || {
-                info.left_out
-                    .iter()
-                    .find(|(pass, _)| *pass == number)
-                    .map_or("not built yet", |l| &l.1)
-            };
             let runs = info.passes.contains(&number);
-            let text = match ms.filter(|_| runs) {
-                Some(ms) => format!("{name}  {ms:.3} ms"),
+            let ms = times.passes.iter().find(|t| t.0 == number);
+            let why = info.left_out.iter().find(|l| l.0 == number);
+            let text = egui::RichText::new(match ms {
+                Some((_, ms)) if runs => format!("{name}  {ms:.3} ms"),
                 None if runs => name.clone(),
-                None => format!("{name}  ({})", why()),
-            };
-            let text = if runs {
-                egui::RichText::new(text)
-            } else {
-                egui::RichText::new(text).weak()
-            };
-            let row = ui.add(egui::Button::new(text).small().frame(false));
-            row.widget_info(|| {
-                egui::WidgetInfo::labeled(
-                    egui::WidgetType::Button,
-                    true,
-                    format!("find pass {name}"),
-                )
+                _ => format!("{name}  ({})", why.map_or("not built yet", |l| &l.1)),
             });
+            let text = if runs { text } else { text.weak() };
+            let row = ui.add(egui::Button::new(text).small().frame(false));
+            let label = format!("find pass {name}");
+            named(&row, egui::WidgetType::Button, &label);
             if row.clicked() {
                 found = Some(name.clone());
             }
@@ -350,26 +323,39 @@ impl Workbench {
         {
             ui.label(format!("{ms:.3} ms (mean)"));
         }
-        let mut needed = None;
-        if let Some((_, why)) = info.left_out.iter().find(|(pass, _)| *pass == number) {
-            ui.colored_label(ui.visuals().warn_fg_color, format!("does not run: {why}"));
-            let needs = self
-                .effects
-                .of(side)
-                .and_then(|f| f.resting.get(name))
-                .map_or(&[][..], Vec::as_slice);
-            ui.horizontal_wrapped(|ui| {
-                for (param, option) in needs {
-                    if ui
-                        .small_button(format!("{param} = {option}"))
-                        .on_hover_text("It runs with this")
-                        .clicked()
-                    {
-                        needed = Some((param.clone(), option.clone()));
-                    }
-                }
-            });
+        let why_not = info.left_out.iter().find(|(pass, _)| *pass == number);
+        let needed = why_not.and_then(|(_, why)| self.needs(ui, side, name, why));
+        self.pass_switches(ui, side, info, name, off);
+        if let Some(uses) = info.uses.iter().find(|u| u.pass == number) {
+            self.pass_resources(ui, side, info, uses);
         }
+        needed
+    }
+
+    /// The reason why a pass does not run. On request, a choice with which it would.
+    fn needs(&self, ui: &mut Ui, side: usize, name: &str, why: &str) -> Option<(String, String)> {
+        ui.colored_label(ui.visuals().warn_fg_color, format!("does not run: {why}"));
+        let found = self.effects.of(side)?;
+        let needs = found.resting.get(name)?;
+        ui.horizontal_wrapped(|ui| {
+            let clicked = |(param, option): &&(String, String)| {
+                ui.small_button(format!("{param} = {option}"))
+                    .on_hover_text("It runs with this")
+                    .clicked()
+            };
+            needs.iter().filter(clicked).last().cloned()
+        })
+        .inner
+    }
+
+    fn pass_switches(
+        &mut self,
+        ui: &mut Ui,
+        side: usize,
+        info: &Arc<GraphInfo>,
+        name: &str,
+        off: &mut Vec<String>,
+    ) {
         ui.horizontal(|ui| {
             let mut on = !off.iter().any(|o| o == name);
             let about = "If off, its output is its `instead`, or zeros. Saved with the experiment";
@@ -388,30 +374,23 @@ impl Workbench {
                 self.solo(side, info, name, off);
             }
         });
-        let Some(uses) = info.uses.iter().find(|u| u.pass == number) else {
-            return needed;
-        };
+    }
+
+    /// Resources of a pass. A click on a texture opens it.
+    fn pass_resources(&mut self, ui: &mut Ui, side: usize, info: &GraphInfo, uses: &PassUses) {
         for (title, list) in [("reads", &uses.reads), ("writes", &uses.writes)] {
             ui.add_space(4.0);
             ui.label(title);
             for resource in list {
                 let texture = info.graph.texture(resource);
-                let text = format!(
-                    "{resource}  {}",
-                    texture.map_or(String::new(), |t| of(info, t))
-                );
-                if ui
-                    .add_enabled(
-                        texture.is_some(),
-                        egui::Button::new(text).small().frame(false),
-                    )
-                    .clicked()
-                {
+                let about = texture.map_or(String::new(), |t| of(info, t));
+                let button = egui::Button::new(format!("{resource}  {about}")).small();
+                let row = ui.add_enabled(texture.is_some(), button.frame(false));
+                if row.clicked() {
                     self.inspect(side, resource.clone());
                 }
             }
         }
-        needed
     }
 
     /// Compares the picture with the same picture without a pass.
@@ -453,6 +432,21 @@ impl Workbench {
         if let Some(texture) = layout.nodes[node].writes.iter().find(texture).cloned() {
             self.tabs.inspector.open(side, texture);
         }
+    }
+}
+
+/// The passes that are off, with a button that turns them on.
+fn passes_off(ui: &mut Ui, info: &GraphInfo, off: &mut Vec<String>) {
+    if off.is_empty() {
+        return;
+    }
+    let warn = ui.visuals().warn_fg_color;
+    ui.colored_label(warn, format!("off: {}", off.join(", ")));
+    for (name, readers) in zeros(info) {
+        ui.colored_label(warn, format!("{name} is zeros now: {readers} read it"));
+    }
+    if ui.button("all passes on").clicked() {
+        off.clear();
     }
 }
 
@@ -542,39 +536,9 @@ impl Canvas<'_> {
     ) {
         let ms = |pass: usize| times.iter().find(|t| t.0 == pass).map(|t| t.1);
         let most = times.iter().map(|t| t.1).fold(0.0, f64::max);
-        let (strong, weak) = (
-            self.ui.visuals().text_color(),
-            self.ui.visuals().weak_text_color(),
-        );
         for column in &layout.columns {
-            let total: f64 = column.passes.iter().filter_map(|p| ms(*p)).sum();
-            let top = column.rect.left_top();
-            self.text(
-                self.area,
-                top,
-                Align2::LEFT_TOP,
-                &column.stage,
-                14.0,
-                strong,
-            );
-            let below = top + Vec2::new(0.0, 17.0);
-            self.text(
-                self.area,
-                below,
-                Align2::LEFT_TOP,
-                &format!("{total:.3} ms"),
-                11.5,
-                weak,
-            );
-            let line = self.place(Rect::from_min_max(
-                top + Vec2::new(0.0, TITLE),
-                column.rect.right_top(),
-            ));
-            self.painter(self.area).hline(
-                line.x_range(),
-                line.top(),
-                Stroke::new(1.0, weak.gamma_multiply(0.4)),
-            );
+            let total = column.passes.iter().filter_map(|p| ms(*p)).sum();
+            self.column(column, total);
         }
         let touches = |i: usize| chosen.is_some_and(|c| layout.nodes[i].name == c);
         for edge in &layout.edges {
@@ -600,6 +564,21 @@ impl Canvas<'_> {
         }
     }
 
+    /// The title of a column: its stage, and the time of its passes [ms].
+    fn column(&self, column: &layout::Column, total: f64) {
+        let visuals = self.ui.visuals();
+        let (strong, weak) = (visuals.text_color(), visuals.weak_text_color());
+        let top = column.rect.left_top();
+        let (at, below) = (Align2::LEFT_TOP, top + Vec2::new(0.0, 17.0));
+        self.text(self.area, top, at, &column.stage, 14.0, strong);
+        self.text(self.area, below, at, &format!("{total:.3} ms"), 11.5, weak);
+        let line = top + Vec2::new(0.0, TITLE);
+        let line = self.place(Rect::from_min_max(line, column.rect.right_top()));
+        let stroke = Stroke::new(1.0, weak.gamma_multiply(0.4));
+        self.painter(self.area)
+            .hline(line.x_range(), line.top(), stroke);
+    }
+
     fn node(
         &mut self,
         info: &GraphInfo,
@@ -608,19 +587,16 @@ impl Canvas<'_> {
         heat: f32,
         is_chosen: bool,
     ) {
-        let (strong, weak) = (
-            self.ui.visuals().text_color(),
-            self.ui.visuals().weak_text_color(),
-        );
-        let Some(response) = self.button(node.rect, node.pass, true, format!("pass {}", node.name))
-        else {
+        let name = format!("pass {}", node.name);
+        let Some(response) = self.button(node.rect, node.pass, true, name) else {
             return;
         };
-        let fill = Color32::from_gray(38).lerp_to_gamma(Color32::from_rgb(140, 66, 40), heat);
-        let fill = if node.runs {
-            fill
-        } else {
-            Color32::from_gray(24)
+        let visuals = self.ui.visuals();
+        let (strong, weak) = (visuals.text_color(), visuals.weak_text_color());
+        let warm = Color32::from_gray(38).lerp_to_gamma(Color32::from_rgb(140, 66, 40), heat);
+        let (fill, color, said) = match node.runs {
+            true => (warm, strong, format!("{time:.3}")),
+            false => (Color32::from_gray(24), weak, "off".into()),
         };
         let edge = match (is_chosen, response.hovered()) {
             (true, _) => Stroke::new(2.0, Color32::from_rgb(240, 190, 90)),
@@ -628,64 +604,50 @@ impl Canvas<'_> {
             _ => Stroke::new(1.0, Color32::from_gray(80)),
         };
         let rect = self.place(node.rect);
-        self.painter(self.area).rect(
-            rect,
-            4.0 * self.seen.zoom,
-            fill,
-            edge,
-            egui::StrokeKind::Inside,
-        );
+        let (round, inside) = (4.0 * self.seen.zoom, egui::StrokeKind::Inside);
+        self.painter(self.area)
+            .rect(rect, round, fill, edge, inside);
         let first = node.rect.left_top() + Vec2::new(6.0, ROW * 0.75);
         let right = Pos2::new(node.rect.right() - 6.0, first.y);
-        let color = if node.runs { strong } else { weak };
-        let said = if node.runs {
-            format!("{time:.3}")
-        } else {
-            "off".into()
-        };
         // Names give way to times.
-        let mut names = node.rect;
-        names.max.x = right.x - 34.0;
-        self.text(
-            self.place(names),
-            first,
-            Align2::LEFT_CENTER,
-            &node.name,
-            11.5,
-            color,
-        );
+        let names = self.place(node.rect.with_max_x(right.x - 34.0));
+        self.text(names, first, Align2::LEFT_CENTER, &node.name, 11.5, color);
         self.text(rect, right, Align2::RIGHT_CENTER, &said, 10.5, color);
-        for (i, resource) in node.writes.iter().enumerate() {
-            let row = row_of(node.rect, i);
-            let texture = info.graph.texture(resource).is_some();
-            let name = format!("{} writes {resource}", node.name);
-            let hit = (self.seen.zoom >= READABLE)
-                .then(|| self.button(row, (node.pass, i), texture, name))
-                .flatten();
-            let bright = texture && hit.as_ref().is_some_and(egui::Response::hovered);
-            let color = if bright {
-                strong
-            } else {
-                Color32::from_gray(150)
-            };
-            let at = row.left_center() + Vec2::new(12.0, 0.0);
-            self.text(
-                self.place(row),
-                at,
-                Align2::LEFT_CENTER,
-                resource,
-                10.5,
-                color,
-            );
-            if hit.is_some_and(|h| h.clicked()) {
-                self.asked = Some(match texture {
-                    true => Asked::Inspect(resource.clone()),
-                    false => Asked::Choose(node.name.clone()),
-                });
-            }
+        for number in 0..node.writes.len() {
+            self.output(info, node, number);
         }
         if response.clicked() {
             self.asked = Some(Asked::Choose(node.name.clone()));
+        }
+    }
+
+    /// The row of a resource that a node writes.
+    fn output(&mut self, info: &GraphInfo, node: &layout::Node, number: usize) {
+        let resource = &node.writes[number];
+        let row = row_of(node.rect, number);
+        let texture = info.graph.texture(resource).is_some();
+        let name = format!("{} writes {resource}", node.name);
+        let hit = (self.seen.zoom >= READABLE)
+            .then(|| self.button(row, (node.pass, number), texture, name))
+            .flatten();
+        let color = match texture && hit.as_ref().is_some_and(egui::Response::hovered) {
+            true => self.ui.visuals().text_color(),
+            false => Color32::from_gray(150),
+        };
+        let at = row.left_center() + Vec2::new(12.0, 0.0);
+        self.text(
+            self.place(row),
+            at,
+            Align2::LEFT_CENTER,
+            resource,
+            10.5,
+            color,
+        );
+        if hit.is_some_and(|h| h.clicked()) {
+            self.asked = Some(match texture {
+                true => Asked::Inspect(resource.clone()),
+                false => Asked::Choose(node.name.clone()),
+            });
         }
     }
 

@@ -144,52 +144,27 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
     let total = a.mean(count, &|f| f.times.gpu_ms).unwrap_or(0.0);
     let row = |name: &str, is_pass: bool, times: [Option<Time<'_>>; 2]| {
         let mean = [0, 1].map(|i| sides[i].mean(count, times[i]?));
-        let alone: Vec<f64> = times[0]
-            .iter()
-            .flat_map(|time| a.last(count).map(time))
-            .collect();
-        let most = alone.iter().copied().fold(0.0, f64::max);
-        let share = mean[0]
-            .filter(|_| total > 0.0 && name != CPU)
-            .map(|ms| format!("{:.1}%", 100.0 * ms / total));
-        let ms = |v: Option<f64>| v.map_or(String::new(), digits);
-        let ratio = match mean {
-            [Some(a), Some(b)] if a > 0.0 => format!("{:.2}", b / a),
-            _ => String::new(),
-        };
-        let share = share.unwrap_or_default();
-        let cells = if both {
-            [ms(mean[0]), ms(mean[1]), ratio, share]
-        } else {
-            [
-                ms(mean[0]),
-                ms(mean[0].map(|_| spread(alone).p95)),
-                share,
-                ms(mean[0].map(|_| most)),
-            ]
-        };
+        let last = times[0].iter().flat_map(|time| a.last(count).map(time));
+        let share = mean[0].filter(|_| total > 0.0 && name != CPU);
         Row {
             name: name.into(),
             is_pass,
             mean,
             skipped: [false; 2],
-            cells,
+            cells: cells(mean, last.collect(), share.map(|ms| ms / total), both),
         }
     };
-    let number = |h: &History, name: &str| h.passes.iter().find(|p| p.1 == name).map(|p| p.0);
-    let was_skipped = |h: &History, name: &str| {
-        h.frames
-            .back()
-            .zip(number(h, name))
-            .is_some_and(|(frame, number)| frame.times.skipped.contains(&number))
-    };
-    let mut list: Vec<Row> = Vec::with_capacity(names.len() + 2);
+    let mut list: Vec<Row> = Vec::with_capacity(names.len() + 3);
     for name in names {
-        let pass =
-            sides.map(|h| number(h, name).map(|number| move |frame: &Frame| frame.pass(number)));
+        let number = sides.map(|h| h.passes.iter().find(|p| p.1 == name).map(|p| p.0));
+        let pass = number.map(|n| n.map(|n| move |frame: &Frame| frame.pass(n)));
         let times = [0, 1].map(|i| pass[i].as_ref().map(|time| time as Time<'_>));
+        let was_skipped = |i: usize| {
+            let last = sides[i].frames.back().zip(number[i]);
+            last.is_some_and(|(frame, number)| frame.times.skipped.contains(&number))
+        };
         list.push(Row {
-            skipped: sides.map(|h| was_skipped(h, name)),
+            skipped: [0, 1].map(was_skipped),
             ..row(name, true, times)
         });
     }
@@ -198,6 +173,22 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
     list.push(row("GPU, first to last", false, all(&|f| f.times.gpu_ms)));
     list.push(row(CPU, false, all(&|f| f.times.cpu_ms)));
     list
+}
+
+/// The columns of a row. `times` are those of A [ms], `share` that of A in the GPU's total.
+fn cells(mean: [Option<f64>; 2], times: Vec<f64>, share: Option<f64>, both: bool) -> [String; 4] {
+    let ms = |v: Option<f64>| v.map_or(String::new(), digits);
+    let share = share.map_or(String::new(), |share| format!("{:.1}%", 100.0 * share));
+    if both {
+        let ratio = match mean {
+            [Some(a), Some(b)] if a > 0.0 => format!("{:.2}", b / a),
+            _ => String::new(),
+        };
+        return [ms(mean[0]), ms(mean[1]), ratio, share];
+    }
+    let most = times.iter().copied().fold(0.0, f64::max);
+    let p95 = mean[0].map(|_| spread(times).p95);
+    [ms(mean[0]), ms(p95), share, ms(mean[0].map(|_| most))]
 }
 
 /// A time with four digits, ms.

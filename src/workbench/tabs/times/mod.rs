@@ -64,7 +64,7 @@ impl Tab for Times {
     fn report(workbench: &mut Workbench, report: &Report) {
         let times = &mut workbench.tabs.times;
         match report {
-            Report::Built { side, info, .. } => times.built(*side, info),
+            Report::Built(built) => times.built(built.side, &built.info),
             Report::Restarted => times.restarted(),
             Report::Picture(picture) => times.note(picture),
             _ => {}
@@ -224,41 +224,32 @@ impl Workbench {
     fn exports(&mut self, ui: &mut Ui) {
         let mut file = None;
         ui.horizontal(|ui| {
-            let some = self.tabs.times.sides.iter().any(|s| !s.frames.is_empty());
-            let button = |text: &str| egui::Button::new(text).small();
-            if ui
-                .add_enabled(some, button("CSV"))
-                .on_hover_text("A row a frame, a column a pass, into captures/")
-                .clicked()
-            {
-                file = Some(("csv", export::csv(&self.tabs.times.sides)));
+            let sides = &self.tabs.times.sides;
+            let some = sides.iter().any(|s| !s.frames.is_empty());
+            let button = |ui: &mut Ui, text: &str, about: &str| {
+                let button = egui::Button::new(text).small();
+                ui.add_enabled(some, button).on_hover_text(about).clicked()
+            };
+            if button(ui, "CSV", "A row a frame, a column a pass, into captures/") {
+                file = Some(("csv", export::csv(sides)));
             }
             let about = "For Perfetto or chrome://tracing, into captures/";
-            if ui
-                .add_enabled(some, button("trace"))
-                .on_hover_text(about)
-                .clicked()
-            {
-                file = Some(("json", Ok(export::trace(&self.tabs.times.sides))));
+            if button(ui, "trace", about) {
+                file = Some(("json", Ok(export::trace(sides))));
             }
+            let kept = sides[0].frames.len();
             let mut changed = self.desired.execution == Execution::Incremental;
             let about =
                 "Skips passes whose output would not change. The picture stays equal to the bit";
-            if ui
-                .toggle_value(&mut changed, egui::RichText::new("what changes").small())
-                .on_hover_text(about)
-                .clicked()
-            {
-                self.desired.execution = if changed {
-                    Execution::Incremental
-                } else {
-                    Execution::Full
+            let text = egui::RichText::new("what changes").small();
+            let toggle = ui.toggle_value(&mut changed, text).on_hover_text(about);
+            if toggle.clicked() {
+                self.desired.execution = match changed {
+                    true => Execution::Incremental,
+                    false => Execution::Full,
                 };
             }
-            ui.weak(format!(
-                "the last {} frames",
-                self.tabs.times.sides[0].frames.len()
-            ));
+            ui.weak(format!("the last {kept} frames"));
         });
         if let Some((ending, bytes)) = file {
             self.export(&format!("times-{}", self.experiment.name), ending, bytes);
@@ -291,12 +282,7 @@ impl Workbench {
         let Some(info) = &self.sides[side].info else {
             return &[];
         };
-        let named = |u: &&PassUses| {
-            info.graph
-                .passes
-                .get(u.pass)
-                .is_some_and(|p| p.value.name.value == name)
-        };
+        let named = |u: &&PassUses| info.graph.pass_name(u.pass) == name;
         info.uses.iter().find(named).map_or(&[], |u| &u.writes)
     }
 
