@@ -1,7 +1,7 @@
 //! Accesses of a module to its storage buffers and images, derived from its instructions instead of
 //! GLSL qualifiers.
 
-use super::strip::{HEADER, instructions, opcode};
+use super::spirv::{DECORATE, HEADER, LOAD, VARIABLE, instructions, opcode};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Accesses to the content of a resource.
@@ -36,9 +36,6 @@ const SIZE: Access = Access {
 };
 
 const FUNCTION_CALL: u32 = 57;
-pub(super) const LOAD: u32 = 61;
-pub(super) const VARIABLE: u32 = 59;
-pub(super) const DECORATE: u32 = 71;
 const MEMBER_DECORATE: u32 = 72;
 const UNIFORM_CONSTANT: u32 = 0;
 const STORAGE_BUFFER: u32 = 12;

@@ -6,6 +6,7 @@ pub(crate) mod layout;
 mod macros;
 mod reflect;
 mod sizes;
+mod spirv;
 mod strip;
 
 pub(crate) use compile::{Compiled, Generated, find, module_include};

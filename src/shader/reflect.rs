@@ -3,7 +3,7 @@
 use super::access::{Access, accesses, stored_by_each, uniform_members};
 use super::layout::Layout;
 use super::sizes::check_sizes;
-use super::strip::instructions;
+use super::spirv::instructions;
 use crate::vulkan::Stage;
 use spirq::prelude::*;
 use spirq::spirv::{Dim, ExecutionMode as Mode, ImageFormat};

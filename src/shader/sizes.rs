@@ -1,7 +1,7 @@
 //! Size limits for a shader's variables and values. Drivers allocate whatever a module declares, so
 //! an array of a billion numbers would use all memory.
 
-use super::strip::{instructions, opcode};
+use super::spirv::{instructions, opcode};
 use std::collections::BTreeMap;
 
 /// Maximum bytes of all variables of a stage without buffers, and of one value.

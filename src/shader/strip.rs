@@ -1,10 +1,8 @@
 //! Removes unused outputs from a shader, so that the driver eliminates the work behind them.
 
-use super::access::{DECORATE, LOAD, VARIABLE, accesses, images_at, origins};
+use super::access::{accesses, images_at, origins};
+use super::spirv::{DECORATE, HEADER, LOAD, VARIABLE, instructions, opcode};
 use std::collections::BTreeSet;
-
-/// Words before the first instruction of a module.
-pub(super) const HEADER: usize = 5;
 
 /// Turns the outputs at these locations into private variables.
 ///
@@ -118,21 +116,4 @@ pub fn strip_images(words: &[u32], bindings: &[u32]) -> Vec<u32> {
         }
     }
     out
-}
-
-/// Opcode of an instruction.
-pub(super) fn opcode(instruction: &[u32]) -> u32 {
-    instruction.first().map_or(0, |w| w & 0xffff)
-}
-
-/// The instructions of a module, after its header.
-pub(super) fn instructions(words: &[u32]) -> impl Iterator<Item = &[u32]> {
-    let mut rest = words.get(HEADER..).unwrap_or(&[]);
-    std::iter::from_fn(move || {
-        let first = *rest.first()?;
-        let count = ((first >> 16) as usize).clamp(1, rest.len());
-        let (instruction, after) = rest.split_at(count);
-        rest = after;
-        Some(instruction)
-    })
 }

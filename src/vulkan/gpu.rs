@@ -220,11 +220,11 @@ fn create_instance(
         let extensions = entry
             .enumerate_instance_extension_properties(None)
             .map_err(VulkanError::at("list extensions"))?;
-        let debug_utils = has(&extensions, ext::debug_utils::NAME) || validation;
+        let debug_utils = super::has(&extensions, ext::debug_utils::NAME) || validation;
         // If all devices are non-conformant, the loader hides them unless enumeration of
         // portability drivers is enabled.
-        let portability =
-            cfg!(target_os = "macos") && has(&extensions, khr::portability_enumeration::NAME);
+        let portability = cfg!(target_os = "macos")
+            && super::has(&extensions, khr::portability_enumeration::NAME);
         let layer_names = if validation {
             vec![VALIDATION.as_ptr()]
         } else {
@@ -265,13 +265,6 @@ fn create_instance(
             .map_err(VulkanError::at("create an instance"))?;
         Ok((instance, debug_utils))
     }
-}
-
-/// Whether a list contains this extension.
-pub(super) fn has(extensions: &[vk::ExtensionProperties], name: &std::ffi::CStr) -> bool {
-    extensions
-        .iter()
-        .any(|e| e.extension_name_as_c_str() == Ok(name))
 }
 
 /// Mask of the valid timestamp bits (VkQueueFamilyProperties).
@@ -377,7 +370,7 @@ fn features(
     extensions: &[vk::ExtensionProperties],
 ) -> Features {
     Features {
-        conservative_rasterization: has(extensions, ext::conservative_rasterization::NAME),
+        conservative_rasterization: super::has(extensions, ext::conservative_rasterization::NAME),
         geometry: have.geometry_shader == vk::TRUE,
         tessellation: have.tessellation_shader == vk::TRUE,
         fragment_stores: have.fragment_stores_and_atomics == vk::TRUE,
@@ -392,7 +385,7 @@ fn features(
         full_index: have.full_draw_index_uint32 == vk::TRUE,
         int64_atomics: have.shader_int64 == vk::TRUE
             && have12.shader_buffer_int64_atomics == vk::TRUE,
-        portability: has(extensions, khr::portability_subset::NAME),
+        portability: super::has(extensions, khr::portability_subset::NAME),
         ..Features::default()
     }
 }

@@ -115,3 +115,10 @@ impl VulkanError {
 
 /// Result of the Vulkan layer.
 pub type Result<T> = std::result::Result<T, VulkanError>;
+
+/// Whether a list contains this extension.
+fn has(extensions: &[vk::ExtensionProperties], name: &std::ffi::CStr) -> bool {
+    extensions
+        .iter()
+        .any(|e| e.extension_name_as_c_str() == Ok(name))
+}

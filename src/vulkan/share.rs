@@ -38,7 +38,7 @@ pub(super) fn is_supported(
     extensions: &[vk::ExtensionProperties],
 ) -> bool {
     use vk::ExternalMemoryFeatureFlags as Can;
-    if !super::gpu::has(extensions, khr::external_memory_fd::NAME) {
+    if !super::has(extensions, khr::external_memory_fd::NAME) {
         return false;
     }
     let info = vk::PhysicalDeviceExternalBufferInfo::default()

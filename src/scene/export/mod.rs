@@ -5,6 +5,7 @@ mod images;
 mod motion;
 mod obj;
 mod textures;
+mod writer;
 
 use std::path::Path;
 

@@ -4,25 +4,25 @@
 use glam::Mat4;
 use serde_json::{Value, json};
 
-use super::gltf::Writer;
+use super::writer::Writer;
 use crate::scene::{Curve, Interpolation, Mover, Scene, Track};
 
 /// Channels with one period: a glTF animation lasts as long as its longest channel.
 #[derive(Default)]
-pub(super) struct Clip {
+struct Clip {
     period: Option<f32>,
     channels: Vec<Value>,
     samplers: Vec<Value>,
 }
 
 impl Clip {
-    pub fn json(&self) -> Value {
+    fn json(&self) -> Value {
         json!({ "channels": self.channels, "samplers": self.samplers })
     }
 }
 
-/// The animated node of each mover that an instance uses.
-pub(super) fn movers(writer: &mut Writer, scene: &Scene) -> Vec<Option<usize>> {
+/// The animated node of each mover that an instance uses, and the animations.
+pub(super) fn movers(writer: &mut Writer, scene: &Scene) -> (Vec<Option<usize>>, Vec<Value>) {
     let mut names: Vec<Option<&str>> = vec![None; scene.movers.len()];
     for instance in &scene.instances {
         let mut next = instance.mover.map(|m| m as usize);
@@ -32,6 +32,7 @@ pub(super) fn movers(writer: &mut Writer, scene: &Scene) -> Vec<Option<usize>> {
         }
     }
     let mut nodes: Vec<Option<usize>> = vec![None; scene.movers.len()];
+    let mut clips = Vec::new();
     for (number, (mover, name)) in scene.movers.iter().zip(names).enumerate() {
         let Some(name) = name else { continue };
         let mut parent = mover
@@ -40,12 +41,18 @@ pub(super) fn movers(writer: &mut Writer, scene: &Scene) -> Vec<Option<usize>> {
         if mover.placed != Mat4::IDENTITY {
             parent = Some(writer.below(parent, json!({ "matrix": mover.placed.to_cols_array() })));
         }
-        nodes[number] = Some(moving(writer, parent, name, mover));
+        nodes[number] = Some(moving(writer, &mut clips, parent, name, mover));
     }
-    nodes
+    (nodes, clips.iter().map(Clip::json).collect())
 }
 
-fn moving(writer: &mut Writer, parent: Option<usize>, name: &str, mover: &Mover) -> usize {
+fn moving(
+    writer: &mut Writer,
+    clips: &mut Vec<Clip>,
+    parent: Option<usize>,
+    name: &str,
+    mover: &Mover,
+) -> usize {
     let Track {
         translation,
         rotation,
@@ -59,28 +66,24 @@ fn moving(writer: &mut Writer, parent: Option<usize>, name: &str, mover: &Mover)
         json!({ "name": format!("{name} motion"), "translation": place.to_array(), "rotation": turn.to_array(),
             "scale": size.to_array() }),
     );
-    let clip = writer
-        .clips
+    let clip = clips
         .iter()
         .position(|clip| clip.period == *period)
         .unwrap_or_else(|| {
-            writer.clips.push(Clip {
+            clips.push(Clip {
                 period: *period,
                 ..Clip::default()
             });
-            writer.clips.len() - 1
+            clips.len() - 1
         });
-    channel(
-        writer,
-        clip,
-        (node, "translation"),
-        translation.as_ref(),
-        |v| v.to_array().to_vec(),
-    );
-    channel(writer, clip, (node, "rotation"), rotation.as_ref(), |q| {
+    let clip = &mut clips[clip];
+    channel(writer, clip, (node, "translation"), translation, |v| {
+        v.to_array().to_vec()
+    });
+    channel(writer, clip, (node, "rotation"), rotation, |q| {
         q.to_array().to_vec()
     });
-    channel(writer, clip, (node, "scale"), scale.as_ref(), |v| {
+    channel(writer, clip, (node, "scale"), scale, |v| {
         v.to_array().to_vec()
     });
     node
@@ -88,9 +91,9 @@ fn moving(writer: &mut Writer, parent: Option<usize>, name: &str, mover: &Mover)
 
 fn channel<T: crate::scene::Value>(
     writer: &mut Writer,
-    clip: usize,
+    clip: &mut Clip,
     (node, path): (usize, &str),
-    curve: Option<&Curve<T>>,
+    curve: &Option<Curve<T>>,
     numbers: impl Fn(T) -> Vec<f32>,
 ) {
     let Some(curve) = curve else { return };
@@ -105,7 +108,6 @@ fn channel<T: crate::scene::Value>(
         Interpolation::Linear => "LINEAR",
         Interpolation::Cubic => "CUBICSPLINE",
     };
-    let clip = &mut writer.clips[clip];
     clip.channels
         .push(json!({ "sampler": clip.samplers.len(), "target": { "node": node, "path": path } }));
     clip.samplers

@@ -1,10 +1,10 @@
 //! Materials: physical models, and Phong and Lambert, which are converted as in MTL files.
 
-use glam::{DAffine2, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 use ufbx::{Material as From, MaterialMap, ShaderType};
 
 use super::numbers::{color, vector};
-use super::pictures::{Laid, Pictures};
+use super::pictures::{Laid, Pictures, UvSource};
 use super::unread;
 use crate::scene::Material;
 use crate::scene::coordinates::{References, UvSources};
@@ -17,13 +17,6 @@ pub(super) const WORDS: Words = Words {
     all_clear: "the alpha of the base colour's picture is below 0.5 everywhere: it is left out",
     heights: "bump maps that hold heights are left out. Convert them to normal maps",
 };
-
-/// A named coordinate set (empty: the first one) and a transform.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct UvSource {
-    pub set: String,
-    pub transform: DAffine2,
-}
 
 /// A material and its texture coordinates.
 #[derive(Clone, Debug)]

@@ -3,7 +3,8 @@
 use glam::DVec2;
 use ufbx::{Mesh as From, VertexVec2};
 
-use super::materials::{Read, UvSource};
+use super::materials::Read;
+use super::pictures::UvSource;
 use super::{blends, skins};
 use crate::metrics::colour::srgb_to_linear;
 use crate::scene::mesh::{RawMesh, weld_sources};

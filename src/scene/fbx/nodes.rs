@@ -1,16 +1,14 @@
 //! The node hierarchy, flattened: instances, lights and cameras in the world.
 
-use std::collections::HashMap;
-
-use glam::{DAffine3, DVec3, Mat4};
+use glam::{DAffine3, DVec3};
 use indexmap::IndexSet;
 use ufbx::{Camera as From, ElementType, Mesh, Node, ProjectionMode, find_prop};
 
 use super::animation::Motion;
-use super::lights;
 use super::meshes::Wanted;
 use super::numbers::{affine, frame, placement};
-use super::{blends, skins};
+use super::skins::{self, Frames};
+use super::{blends, lights};
 use crate::scene::defaults::least_reach;
 use crate::scene::obj::shown;
 use crate::scene::warnings::Warnings;
@@ -25,9 +23,6 @@ struct Visit<'a> {
     above: DAffine3,
     visible: bool,
 }
-
-/// Moving frame and transform of each node by number.
-pub(super) type Frames = HashMap<u32, (Option<u32>, Mat4)>;
 
 /// The content of the hierarchy.
 pub(super) struct Placed<'a> {

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use glam::DAffine2;
 use ufbx::{Texture, TextureType, WrapMode};
 
-use super::materials::UvSource;
 use super::numbers::affine;
 use crate::scene::obj::shown;
 use crate::scene::phong::{Finder, Found};
@@ -22,6 +21,13 @@ pub(super) struct Pictures<'a> {
     pub requests: &'a mut Requests,
     /// Embedded files by address and length.
     held: HashMap<(usize, usize), Source>,
+}
+
+/// A named coordinate set (empty: the first one) and a transform.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct UvSource {
+    pub set: String,
+    pub transform: DAffine2,
 }
 
 /// A texture with its coordinate source.

@@ -1,13 +1,18 @@
 //! Skins: the bones of vertices and of instances.
 
+use std::collections::HashMap;
+
+use glam::Mat4;
 use ufbx::{Mesh, SkinDeformer, SkinningMethod};
 
-use super::nodes::Frames;
 use super::numbers::{affine, placement};
 use crate::scene::motion::Rig;
 use crate::scene::obj::shown;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Influence, Joint};
+
+/// Moving frame and transform of each node by number.
+pub(super) type Frames = HashMap<u32, (Option<u32>, Mat4)>;
 
 /// The skin that moves a mesh; the first of several.
 pub(super) fn of(mesh: &Mesh) -> Option<&SkinDeformer> {

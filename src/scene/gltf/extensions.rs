@@ -4,7 +4,6 @@ use ::gltf::Material as From;
 use glam::Vec3;
 use serde_json::Value;
 
-use super::materials::finite3;
 use super::means::Means;
 use crate::scene::Material;
 use crate::scene::warnings::Warnings;
@@ -126,4 +125,14 @@ pub(super) fn unlit(material: &mut Material) {
         material.base_color_texture = None;
     }
     (material.metallic, material.roughness, material.specular) = (0.0, 1.0, 0.0);
+}
+
+/// A finite, non-negative colour.
+pub(super) fn finite3(color: [f32; 3]) -> Vec3 {
+    let color = Vec3::from_array(color);
+    if color.is_finite() {
+        color.max(Vec3::ZERO)
+    } else {
+        Vec3::ZERO
+    }
 }

@@ -6,10 +6,10 @@ use ::gltf::material::AlphaMode;
 use ::gltf::{Document, texture};
 use glam::{Vec3, Vec4};
 
-use super::buffers::Buffers;
-use super::means::Means;
+use super::buffers::{self, Buffers};
+use super::extensions::{self, finite3};
+use super::means::{Means, name};
 use super::placing::{Placing, UvSources};
-use super::{buffers, extensions};
 use crate::scene::progress::Progress;
 use crate::scene::texture::{Recipe, Requests, Source};
 use crate::scene::warnings::Warnings;
@@ -50,14 +50,6 @@ pub(super) fn read(
         uv_sources.push(UvSources::default());
     }
     Ok((materials, uv_sources, requests))
-}
-
-/// Its name, or a number.
-pub(super) fn name(material: &::gltf::Material) -> String {
-    let index = material.index().unwrap_or_default();
-    material
-        .name()
-        .map_or_else(|| format!("material {index}"), str::to_owned)
 }
 
 /// Sources of base colour, metallic and roughness.
@@ -239,16 +231,6 @@ fn convert(
 
 fn source(info: &texture::Info, images: &[Source]) -> Source {
     images[info.texture().source().index()].clone()
-}
-
-/// A finite, non-negative colour.
-pub(super) fn finite3(color: [f32; 3]) -> Vec3 {
-    let color = Vec3::from_array(color);
-    if color.is_finite() {
-        color.max(Vec3::ZERO)
-    } else {
-        Vec3::ZERO
-    }
 }
 
 fn finite4(color: [f32; 4]) -> Vec4 {

@@ -26,7 +26,7 @@ impl Means {
         let mut requests = Requests::default();
         let mut indices = HashMap::new();
         for material in document.materials() {
-            let name = super::materials::name(&material);
+            let name = name(&material);
             for (info, color) in asked(&material) {
                 let i = info.texture().source().index();
                 let image = images[i].clone();
@@ -84,4 +84,12 @@ fn asked<'a>(material: &Material<'a>) -> Vec<(texture::Info<'a>, bool)> {
         .map(|info| (info, true))
         .chain(data.map(|info| (info, false)))
         .collect()
+}
+
+/// The name of a material, or a number.
+pub(super) fn name(material: &Material) -> String {
+    let index = material.index().unwrap_or_default();
+    material
+        .name()
+        .map_or_else(|| format!("material {index}"), str::to_owned)
 }

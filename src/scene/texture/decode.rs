@@ -9,7 +9,8 @@ use image::{DynamicImage, ImageFormat, ImageReader, Limits, RgbaImage};
 use crate::files::read_input;
 
 use super::{
-    Filter, Notice, Recipe, Source, Texture, TextureFormat, dds, ktx2, mips, texture_from_rgba,
+    Filter, MAX_FILE_BYTES, MAX_FILE_SIDE, Notice, Recipe, Source, Texture, TextureFormat, dds,
+    ktx2, mips, texture_from_rgba,
 };
 
 /// Supported image formats besides DDS and KTX2.
@@ -20,10 +21,6 @@ const READ: [ImageFormat; 5] = [
     ImageFormat::Tga,
     ImageFormat::Bmp,
 ];
-/// Largest width and height of an image file.
-pub(super) const MAX_FILE_SIDE: u32 = 16384;
-/// Largest memory of a decoded image.
-pub(in crate::scene) const MAX_FILE_BYTES: u64 = 512 << 20;
 /// Larger textures are reduced to this side.
 const MAX_SIDE: u32 = 4096;
 

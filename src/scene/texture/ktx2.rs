@@ -9,8 +9,7 @@ use image_dds::ImageFormat;
 use ktx2::{Format, Header, Level, LevelIndex, SupercompressionScheme};
 use ruzstd::{StreamingDecoder, io::Read};
 
-use super::dds;
-use super::decode::{MAX_FILE_BYTES, MAX_FILE_SIDE};
+use super::{MAX_FILE_BYTES, MAX_FILE_SIDE, dds};
 
 #[cfg(test)]
 mod tests;

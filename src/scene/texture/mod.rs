@@ -23,10 +23,15 @@ use super::{SceneError, Texture, TextureFormat};
 
 pub(super) use content::Holes;
 pub(crate) use decode::SmallPicture;
-pub(super) use decode::{MAX_FILE_BYTES, decode_limited, first_level_rgba};
+pub(super) use decode::{decode_limited, first_level_rgba};
 pub(super) use kinds::with_kinds_told;
 pub(crate) use kinds::{MAX_TEXTURE_KINDS, SHARED_EDGE, TextureKind, keep_their_size};
 pub(super) use mips::{Filter, texture_from_rgba};
+
+/// Largest width and height of an image file.
+const MAX_FILE_SIDE: u32 = 16384;
+/// Largest memory of a decoded image.
+pub(super) const MAX_FILE_BYTES: u64 = 512 << 20;
 
 /// Source of an image's bytes.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
