@@ -275,7 +275,6 @@ pub fn bars(
         .flat_map(|b| &b.parts)
         .map(|p| p.0.as_str())
         .collect();
-    // The legend has four entries per row.
     let pixels = |rows: usize| ROW.saturating_mul(i32::try_from(rows).unwrap_or(i32::MAX));
     let top = 44 + pixels(names.len().div_ceil(4));
     let bottom = top.saturating_add(pixels(bars.len()));
@@ -285,21 +284,7 @@ pub fn bars(
     );
     drawn(title, size, |area| {
         area.draw(&Text::new(title.to_string(), (12, 12), (FONT, 20)))?;
-        for (i, name) in names.iter().enumerate() {
-            let at = (
-                12 + i32::try_from(i % 4)? * 260,
-                42 + i32::try_from(i / 4)? * ROW,
-            );
-            area.draw(&Rectangle::new(
-                [at, (at.0 + 12, at.1 + 12)],
-                color(i).filled(),
-            ))?;
-            area.draw(&Text::new(
-                (*name).to_string(),
-                (at.0 + 18, at.1),
-                (FONT, 15),
-            ))?;
-        }
+        legend(area, &names)?;
         let most = bars.iter().map(Bar::length).fold(0.0, f64::max).max(1e-9);
         let x = |v: f64| LEFT + (v * f64::from(WIDTH - LEFT - RIGHT) / most).round() as i32;
         for value in steps((0.0, most)) {
@@ -308,31 +293,21 @@ pub fn bars(
                 RGBColor(220, 220, 220),
             ))?;
             let number = format!("{}{unit}", short(value));
-            area.draw(&Text::new(
-                number,
-                (x(value), bottom + 6),
-                text(14, HPos::Center, VPos::Top),
-            ))?;
+            let style = text(14, HPos::Center, VPos::Top);
+            area.draw(&Text::new(number, (x(value), bottom + 6), style))?;
         }
         for (y, bar) in (0i32..).map(|i| top + i * ROW).zip(bars) {
-            let label = text(14, HPos::Right, VPos::Center);
-            area.draw(&Text::new(
-                cut(&bar.label, LABEL),
-                (LEFT - 8, y + ROW / 2),
-                label,
-            ))?;
+            let (label, style) = (cut(&bar.label, LABEL), text(14, HPos::Right, VPos::Center));
+            area.draw(&Text::new(label, (LEFT - 8, y + ROW / 2), style))?;
             let mut from = 0.0;
             for (name, length) in &bar.parts {
                 let color = color(names.get_index_of(name.as_str()).unwrap_or(0));
-                let style = if bar.hollow {
-                    color.stroke_width(1)
-                } else {
-                    color.filled()
+                let style = match bar.hollow {
+                    true => color.stroke_width(1),
+                    false => color.filled(),
                 };
-                area.draw(&Rectangle::new(
-                    [(x(from), y + 3), (x(from + length), y + ROW - 3)],
-                    style,
-                ))?;
+                let corners = [(x(from), y + 3), (x(from + length), y + ROW - 3)];
+                area.draw(&Rectangle::new(corners, style))?;
                 from += length;
             }
             let number = text(14, HPos::Left, VPos::Center);
@@ -340,6 +315,21 @@ pub fn bars(
         }
         Ok(())
     })
+}
+
+/// Four names per row below the title, with their colours.
+fn legend(area: &Area, names: &IndexSet<&str>) -> Result<(), Failure> {
+    for (i, name) in names.iter().enumerate() {
+        let at = (
+            12 + i32::try_from(i % 4)? * 260,
+            42 + i32::try_from(i / 4)? * ROW,
+        );
+        let square = [at, (at.0 + 12, at.1 + 12)];
+        area.draw(&Rectangle::new(square, color(i).filled()))?;
+        let name = (*name).to_string();
+        area.draw(&Text::new(name, (at.0 + 18, at.1), (FONT, 15)))?;
+    }
+    Ok(())
 }
 
 /// Colour of the entry with this index.

@@ -3,6 +3,7 @@
 use crate::diagnostics::{At, Diagnostic, Loc, Severity, Sources};
 use crate::experiment::Experiment;
 use serde::de::DeserializeOwned;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// A file and its mistakes.
@@ -59,16 +60,17 @@ impl Source {
         self.errors.push(self.sources.error(at, message));
     }
 
-    /// A number of frames, within limits.
-    pub fn frames(
+    /// A number within limits.
+    pub fn number<T: Copy + PartialOrd + Display>(
         &mut self,
-        value: &Option<Loc<usize>>,
-        default: usize,
-        (least, most): (usize, usize),
-    ) -> usize {
+        name: &str,
+        value: &Option<Loc<T>>,
+        default: T,
+        (least, most): (T, T),
+    ) -> T {
         match value {
             Some(v) if v.value < least || v.value > most => {
-                self.wrong(v.at, format!("frames must be {least} to {most}"));
+                self.wrong(v.at, format!("{name} must be {least} to {most}"));
                 default
             }
             Some(v) => v.value,

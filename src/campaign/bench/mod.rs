@@ -105,47 +105,8 @@ pub(crate) fn bench(
             points.iter().zip(&mut configurations).zip(&mut turns)
         {
             if configuration.error.is_none() {
-                let Runner { lab, warm, .. } = &mut *runner;
-                let loaded = warm.graph(&lab.home, &point.experiment.graph)?;
-                let reuse = turns.left.as_ref().or(last.as_ref());
-                match timed(
-                    lab,
-                    loaded,
-                    &point.experiment,
-                    &point.scene,
-                    frames,
-                    &[],
-                    reuse,
-                ) {
-                    Ok(Timed {
-                        mut session,
-                        times,
-                        warmup,
-                    }) => {
-                        let warmup = turns.warmup.map_or(warmup, |least| least.min(warmup));
-                        turns.warmup = Some(warmup);
-                        turns.rounds.push(times);
-                        if round + 1 == rounds {
-                            let warnings = session.failed_checks()?;
-                            let all = turns.rounds.concat();
-                            let name = &point.experiment.name;
-                            let stats = stats::collect(
-                                &lab.gpu.info,
-                                name,
-                                &session,
-                                &all,
-                                warmup,
-                                warnings,
-                            );
-                            configuration.times =
-                                Some(times_of(&session, stats, &all, &turns.rounds));
-                        }
-                        // The next configuration reuses pipelines and scene.
-                        last = (round == 0).then(|| session.share());
-                        turns.left = Some(session.share());
-                    }
-                    Err(error) => configuration.error = Some(error.to_string()),
-                }
+                let of = (round == 0, round + 1 == rounds);
+                measure(runner, frames, (point, configuration), turns, &mut last, of)?;
             }
             runner.tell(Progress::Finished(String::new(), Vec::new()));
         }
@@ -160,6 +121,45 @@ pub(crate) fn bench(
         names,
         configurations,
     })
+}
+
+/// Measures a configuration in one round, which is the first or the last one. `last` has reusable
+/// parts of the configuration before.
+fn measure(
+    runner: &mut Runner,
+    frames: Frames,
+    (point, configuration): (&SweepPoint, &mut Configuration),
+    turns: &mut Turns,
+    last: &mut Option<ReusableParts>,
+    (is_first, is_last): (bool, bool),
+) -> Result<(), LabError> {
+    let Runner { lab, warm, .. } = runner;
+    let loaded = warm.graph(&lab.home, &point.experiment.graph)?;
+    let reuse = turns.left.as_ref().or(last.as_ref());
+    let (experiment, scene) = (&point.experiment, &point.scene);
+    match timed(lab, loaded, experiment, scene, frames, &[], reuse) {
+        Ok(Timed {
+            mut session,
+            times,
+            warmup,
+        }) => {
+            let warmup = turns.warmup.map_or(warmup, |least| least.min(warmup));
+            turns.warmup = Some(warmup);
+            turns.rounds.push(times);
+            if is_last {
+                let warnings = session.failed_checks()?;
+                let all = turns.rounds.concat();
+                let (info, name) = (&lab.gpu.info, &experiment.name);
+                let stats = stats::collect(info, name, &session, &all, warmup, warnings);
+                configuration.times = Some(times_of(&session, stats, &all, &turns.rounds));
+            }
+            // The next configuration reuses pipelines and scene.
+            *last = is_first.then(|| session.share());
+            turns.left = Some(session.share());
+        }
+        Err(error) => configuration.error = Some(error.to_string()),
+    }
+    Ok(())
 }
 
 /// Statistics over all frames, and the median of each round.

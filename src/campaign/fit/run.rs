@@ -11,6 +11,7 @@ use crate::campaign::sweep::{
     Manifest, ManifestPoint, Measuring, PointRecord, points_in, write_table,
 };
 use crate::experiment::Experiment;
+use crate::graph::Graph;
 use crate::graph::param::Params;
 use crate::lab::{LabError, parts_of};
 use crate::measure::{Frames, Scored};
@@ -82,6 +83,25 @@ pub struct Request<'a> {
     pub folder: PathBuf,
 }
 
+impl Request<'_> {
+    fn measuring(&self) -> Measuring<'_> {
+        Measuring {
+            frames: self.frames,
+            bounces: std::slice::from_ref(&self.bounces),
+            samples: Some(self.samples),
+            scored: Scored::One(self.part, self.metric),
+        }
+    }
+
+    fn limits(&self) -> Limits {
+        Limits {
+            bound: self.goal.bound(),
+            evaluations: self.evaluations,
+            least_gain: self.least_gain,
+        }
+    }
+}
+
 /// Result of a search.
 pub struct Fitted {
     /// Best setting and all trials.
@@ -100,59 +120,23 @@ pub fn run(
     on_progress: &mut dyn FnMut(Progress),
 ) -> Result<Fitted, LabError> {
     let mut runner = Runner::open(open, open_scene, on_progress)?;
-    let Request {
-        experiment,
-        axes,
-        part,
-        ..
-    } = *request;
-    let graph = runner
-        .warm
-        .graph(&runner.lab.home, &experiment.graph)?
-        .graph
-        .clone();
-    let measuring = Measuring {
-        frames: request.frames,
-        bounces: &[request.bounces],
-        samples: Some(request.samples),
-        scored: Scored::One(part, request.metric),
-    };
+    let (experiment, axes) = (request.experiment, request.axes);
+    let Runner { lab, warm, .. } = &mut runner;
+    let graph = warm.graph(&lab.home, &experiment.graph)?.graph.clone();
+    let measuring = request.measuring();
     let first = start(axes, &experiment.params_over(&graph.params)?);
     let begin = point(&mut runner, request, &first)?;
-    let references = measuring.references(&mut runner, &begin)?;
-    let known = references
-        .first()
-        .and_then(|(_, reference)| reference.parts.get(part));
-    let parts = parts_of(&graph);
-    let Some(known) = known.filter(|_| parts.iter().any(|p| p.name == part)) else {
-        let all: Vec<&str> = parts.iter().map(|p| p.name.as_str()).collect();
-        return Err(LabError::Request(format!(
-            "no part '{part}'; there are {}",
-            all.join(", ")
-        )));
-    };
-    if let Goal::Error(bound) = request.goal
-        && request.metric.within(bound, known.noise)
-    {
-        let message =
-            format!("warning: an error of {bound} is within the reference's noise: raise --spp");
-        runner.tell(Progress::Note(message));
-    }
+    check(&mut runner, request, &measuring, &graph, &begin)?;
     let folder = points_in(&request.folder);
     folder.clean(&["points", "pictures", "errors", "references"]);
     let mut points: Vec<ManifestPoint> = Vec::new();
     let sizes: Vec<usize> = axes.iter().map(|a| a.1.len()).collect();
-    let limits = Limits {
-        bound: request.goal.bound(),
-        evaluations: request.evaluations,
-        least_gain: request.least_gain,
-    };
     let mut refused = String::new();
     runner.tell(Progress::Begins {
         todo: request.evaluations,
         before: 0,
     });
-    let found = search(&sizes, &first, limits, &mut |place| {
+    let found = search(&sizes, &first, request.limits(), &mut |place| {
         let tried = point(&mut runner, request, place)?;
         // Times of other devices do not count.
         let mut kept = |runner: &mut Runner, point: &SweepPoint| {
@@ -170,40 +154,65 @@ pub fn run(
             Some((ms, error)) => format!("{ms:9.3} ms {error:11.4e}"),
             None => format!("cannot be run: {refused}"),
         };
-        runner.tell(Progress::Tried(format!(
-            "{:4} {what}  {}",
-            points.len(),
-            names(axes, place)
-        )));
+        let (number, names) = (points.len(), names(axes, place));
+        runner.tell(Progress::Tried(format!("{number:4} {what}  {names}")));
         Ok::<_, LabError>(trial)
     })?;
     runner.tell(Progress::Ends);
-    let varied = axes.iter().map(|a| a.0.clone()).collect();
-    let text = axes
-        .iter()
-        .map(|(name, values)| format!("{name}={}\n", values.join(",")))
-        .collect();
-    Manifest::new(
-        experiment.name.clone(),
-        text,
-        varied,
-        request.frames,
-        points,
-    )
-    .write(&request.folder)?;
-    write_table(&request.folder)?;
+    write(request, points)?;
     LabError::of_messages(runner.lab.gpu.messages().len())?;
-    let found = found.ok_or_else(|| {
-        LabError::Request(format!(
-            "the setting to start from cannot be run: {refused}"
-        ))
-    })?;
+    let why = || format!("the setting to start from cannot be run: {refused}");
+    let found = found.ok_or_else(|| LabError::Request(why()))?;
     let best = at(experiment, axes, &found.place);
     Ok(Fitted {
         found,
         best,
         defaults: graph.params.clone(),
     })
+}
+
+/// Checks that the reference has the part, and warns about noise above the bound.
+fn check(
+    runner: &mut Runner,
+    request: &Request,
+    measuring: &Measuring,
+    graph: &Graph,
+    begin: &SweepPoint,
+) -> Result<(), LabError> {
+    let part = request.part;
+    let references = measuring.references(runner, begin)?;
+    let known = references
+        .first()
+        .and_then(|(_, reference)| reference.parts.get(part));
+    let parts = parts_of(graph);
+    let Some(known) = known.filter(|_| parts.iter().any(|p| p.name == part)) else {
+        let all: Vec<&str> = parts.iter().map(|p| p.name.as_str()).collect();
+        return Err(LabError::Request(format!(
+            "no part '{part}'; there are {}",
+            all.join(", ")
+        )));
+    };
+    if let Goal::Error(bound) = request.goal
+        && request.metric.within(bound, known.noise)
+    {
+        let message =
+            format!("warning: an error of {bound} is within the reference's noise: raise --spp");
+        runner.tell(Progress::Note(message));
+    }
+    Ok(())
+}
+
+/// Writes the list of points and the table.
+fn write(request: &Request, points: Vec<ManifestPoint>) -> Result<(), LabError> {
+    let varied = request.axes.iter().map(|a| a.0.clone()).collect();
+    let text = request
+        .axes
+        .iter()
+        .map(|(name, values)| format!("{name}={}\n", values.join(",")))
+        .collect();
+    let name = request.experiment.name.clone();
+    Manifest::new(name, text, varied, request.frames, points).write(&request.folder)?;
+    write_table(&request.folder)
 }
 
 /// The varied values, as text.

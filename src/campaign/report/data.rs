@@ -3,7 +3,8 @@
 use crate::campaign::charts::file_name;
 use crate::campaign::points::{labelled, total_first};
 use crate::campaign::record::Outcome;
-use crate::campaign::sweep::{Collected, Subject, parts_of};
+use crate::campaign::sweep::{Collected, PointRecord, Subject, parts_of};
+use crate::measure::Point;
 use crate::metrics::{Metric, RELMSE, within_noise};
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -12,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Largest size of the pictures in a page, bytes.
 const MAX_PICTURES: usize = 64 << 20;
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Dot {
     pub id: String,
     pub labels: IndexMap<String, String>,
@@ -99,6 +100,27 @@ pub struct Data {
 }
 
 impl Dot {
+    /// The dot of a record, without labels, subject and pictures.
+    fn new(record: &PointRecord, point: &Point) -> Dot {
+        let mut stages: IndexMap<String, f64> = IndexMap::new();
+        for pass in &point.stats.passes {
+            *stages.entry(pass.stage.clone()).or_default() += pass.gpu_ms.median;
+        }
+        Dot {
+            id: record.id.clone(),
+            ms: point.stats.total_gpu_ms.median,
+            p95: point.stats.total_gpu_ms.p95,
+            bytes: point.stats.total_bytes,
+            stages: stages.into_iter().collect(),
+            scores: parts_of(point),
+            noise: point.noise.clone(),
+            warnings: point.stats.warnings.clone(),
+            graph: point.stats.graph.clone(),
+            experiment: record.about.experiment.clone(),
+            ..Dot::default()
+        }
+    }
+
     /// Title of a dot, from some of its values.
     pub fn title(&self, names: &[&String]) -> String {
         let text = labelled(
@@ -148,39 +170,15 @@ impl Data {
             };
             let key = (&record.about.subject, &record.device.name);
             let subject = keys.iter().position(|k| *k == key).unwrap_or_else(|| {
-                keys.push(key);
-                let (s, device) = (&record.about.subject, &record.device);
-                let same = keys.iter().filter(|k| k.0.scene == s.scene && k.0.size == s.size && k.1 == key.1).count();
-                let number = if same > 1 { format!(" ({same})") } else { String::new() };
-                data.subjects.push(format!("{}{number} at {}x{}, {}", s.scene, s.size.0, s.size.1, device.name));
-                let references: Vec<String> =
-                    point.references.iter().map(|(bounces, n)| format!("{n} samples a pixel of {bounces} bounces")).collect();
-                data.samples.push(point.references.iter().map(|(bounces, n)| (*bounces, *n)).collect());
-                let samples = match references.is_empty() {
-                    true => String::from("no reference"),
-                    false => format!("reference: {}", references.join("; ")),
+                let (s, device) = key;
+                let like = |k: &&(&Subject, &String)| {
+                    k.0.scene == s.scene && k.0.size == s.size && k.1 == device
                 };
-                let beside = |b: &&u32| point.scores.contains_key(&format!("total, {b} bounces"));
-                let reference = collected.reference(record).filter(|b| b.len() <= room);
-                room -= reference.as_ref().map_or(0, Vec::len);
-                data.references.push(reference);
-                data.bounces.push(point.references.keys().find(|b| !beside(b)).copied());
-                let frames = point.stats.passes.first().map_or(0, |p| p.frames);
-                let alike = collected.points.iter().filter_map(|(_, r)| r.as_ref());
-                let alike = alike.filter(|r| (&r.about.subject, &r.device.name) == key);
-                let warmups = alike.filter_map(|r| Some(r.done()?.stats.warmup));
-                let (least, most) = warmups.fold((usize::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
-                let warmup = if least < most { format!("{least} to {most}") } else { most.to_string() };
-                data.settings.push(format!(
-                    "camera {}, time {} s; {}, Vulkan {}; conelab {}; {frames} frames after {warmup} of warm-up; every pass in every frame; {samples}",
-                    s.camera, s.time, device.driver, device.api, point.stats.version
-                ));
+                let number = keys.iter().filter(like).count() + 1;
+                keys.push(key);
+                data.add_subject(collected, (record, point), number, &mut room);
                 keys.len() - 1
             });
-            let mut stages: IndexMap<&str, f64> = IndexMap::new();
-            for pass in &point.stats.passes {
-                *stages.entry(&pass.stage).or_default() += pass.gpu_ms.median;
-            }
             let mut picture = |kind| {
                 let bytes = collected
                     .picture(kind, &record.id)
@@ -189,23 +187,11 @@ impl Data {
                 Some(bytes)
             };
             data.dots.push(Dot {
-                id: record.id.clone(),
                 labels: planned.labels.clone(),
                 subject,
-                ms: point.stats.total_gpu_ms.median,
-                p95: point.stats.total_gpu_ms.p95,
-                bytes: point.stats.total_bytes,
-                stages: stages
-                    .into_iter()
-                    .map(|(name, ms)| (name.to_string(), ms))
-                    .collect(),
-                scores: parts_of(point),
-                noise: point.noise.clone(),
-                warnings: point.stats.warnings.clone(),
-                graph: point.stats.graph.clone(),
-                experiment: record.about.experiment.clone(),
                 picture: picture("pictures"),
                 error_map: picture("errors"),
+                ..Dot::new(record, point)
             });
         }
         data.parts = total_first(data.dots.iter().flat_map(|d| d.scores.keys()));
@@ -214,6 +200,54 @@ impl Data {
             .map(|(subject, device)| (subject.clone(), device.clone()))
             .collect();
         data
+    }
+
+    /// Adds the subject of a point. `number` counts those of one scene, size and device; `room` is
+    /// what pictures may still take, bytes.
+    fn add_subject(
+        &mut self,
+        collected: &Collected,
+        (record, point): (&PointRecord, &Point),
+        number: usize,
+        room: &mut usize,
+    ) {
+        let (s, device) = (&record.about.subject, &record.device);
+        let number = match number {
+            1 => String::new(),
+            number => format!(" ({number})"),
+        };
+        let (width, height) = s.size;
+        self.subjects.push(format!(
+            "{}{number} at {width}x{height}, {}",
+            s.scene, device.name
+        ));
+        let text = |(bounces, n): (&u32, &u64)| format!("{n} samples a pixel of {bounces} bounces");
+        let references: Vec<String> = point.references.iter().map(text).collect();
+        let samples = match references.is_empty() {
+            true => String::from("no reference"),
+            false => format!("reference: {}", references.join("; ")),
+        };
+        self.samples
+            .push(point.references.iter().map(|(b, n)| (*b, *n)).collect());
+        let beside = |b: &&u32| point.scores.contains_key(&format!("total, {b} bounces"));
+        let reference = collected.reference(record).filter(|b| b.len() <= *room);
+        *room -= reference.as_ref().map_or(0, Vec::len);
+        self.references.push(reference);
+        self.bounces
+            .push(point.references.keys().find(|b| !beside(b)).copied());
+        let frames = point.stats.passes.first().map_or(0, |p| p.frames);
+        let alike = collected.points.iter().filter_map(|(_, r)| r.as_ref());
+        let alike = alike.filter(|r| r.about.subject == *s && r.device.name == device.name);
+        let warmups = alike.filter_map(|r| Some(r.done()?.stats.warmup));
+        let (least, most) = warmups.fold((usize::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
+        let warmup = match least < most {
+            true => format!("{least} to {most}"),
+            false => most.to_string(),
+        };
+        self.settings.push(format!(
+            "camera {}, time {} s; {}, Vulkan {}; conelab {}; {frames} frames after {warmup} of warm-up; every pass in every frame; {samples}",
+            s.camera, s.time, device.driver, device.api, point.stats.version
+        ));
     }
 
     /// The points of a subject that have a score, in order.

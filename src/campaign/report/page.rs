@@ -45,14 +45,8 @@ struct PageData<'a> {
     dots: Vec<PageDot<'a>>,
 }
 
-/// The page as HTML.
-pub fn page(
-    data: &Data,
-    charts: &[Chart],
-    passes: &[(String, String)],
-    table: &str,
-    scenes: Option<&Scenes>,
-) -> Result<String, LabError> {
+/// What the page's script shows.
+fn page_data<'a>(data: &'a Data, charts: &'a [Chart]) -> PageData<'a> {
     let jpeg = |bytes: &Option<Vec<u8>>| bytes.as_ref().map(|b| url("image/jpeg", b));
     let dots = data.dots.iter().map(|dot| PageDot {
         dot,
@@ -65,7 +59,7 @@ pub fn page(
         metric: c.metric.key,
         points: &c.points,
     });
-    let shown = PageData {
+    PageData {
         names: &data.names,
         subjects: &data.subjects,
         settings: &data.settings,
@@ -80,9 +74,19 @@ pub fn page(
             .collect(),
         charts: charted.collect(),
         dots: dots.collect(),
-    };
+    }
+}
+
+/// The page as HTML.
+pub fn page(
+    data: &Data,
+    charts: &[Chart],
+    passes: &[(String, String)],
+    table: &str,
+    scenes: Option<&Scenes>,
+) -> Result<String, LabError> {
     // Without `<` no string can close the script element.
-    let json = serde_json::to_string(&shown)
+    let json = serde_json::to_string(&page_data(data, charts))
         .map_err(LabError::making("JSON"))?
         .replace('<', "\\u003c");
     let title = data.sweeps.join(", ");

@@ -2,7 +2,7 @@
 
 use super::data::Scored;
 use super::pareto::pareto;
-use crate::campaign::charts::{Area, Axis, FONT, Failure, color, drawn, plane};
+use crate::campaign::charts::{Area, Axis, FONT, Failure, Plane, color, drawn, plane};
 use crate::lab::LabError;
 use plotters::prelude::*;
 
@@ -27,14 +27,10 @@ fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), F
         .fold(f64::INFINITY, f64::min)
         .min(1.0);
     let place = |d: &Scored| (d.ms, d.error.max(least / 10.0));
-    let (xs, ys) = (
-        around(dots.iter().map(|d| place(d).0)),
-        around(dots.iter().map(|d| place(d).1)),
-    );
-    let (x, y) = (
-        Axis::log("GPU time of a frame, ms, median", xs),
-        Axis::log(metric, ys),
-    );
+    let xs = around(dots.iter().map(|d| place(d).0));
+    let ys = around(dots.iter().map(|d| place(d).1));
+    let x = Axis::log("GPU time of a frame, ms, median", xs);
+    let y = Axis::log(metric, ys);
     let title = format!("{title}, {metric} against time ({} points)", dots.len());
     let mut chart = plane(area, &title, &x, &y)?;
     let pairs: Vec<(f64, f64)> = dots.iter().map(|d| (d.ms, d.error)).collect();
@@ -73,27 +69,35 @@ fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), F
         EmptyElement::at(place(d)) + square + name
     }))?;
     if experiments.len() > 1 {
-        for name in &experiments {
-            let color = color_of(name);
-            // A rectangle, because circles are dots.
-            let key = move |(x, y)| Rectangle::new([(x, y - 5), (x + 10, y + 5)], color.filled());
-            chart
-                .draw_series(std::iter::empty::<Circle<(f64, f64), i32>>())?
-                .label(*name)
-                .legend(key);
-        }
-        chart
-            .configure_series_labels()
-            .position(free_corner(
-                &dots.iter().map(place).collect::<Vec<_>>(),
-                (xs, ys),
-                experiments.len(),
-            ))
-            .background_style(WHITE.mix(0.8))
-            .border_style(BLACK.mix(0.2))
-            .label_font((FONT, 15))
-            .draw()?;
+        let points: Vec<_> = dots.iter().map(place).collect();
+        key(&mut chart, &experiments, &points, (xs, ys))?;
     }
+    Ok(())
+}
+
+/// The colours of the experiments, in the corner with the fewest points.
+fn key<'a, 'b: 'a>(
+    chart: &mut Plane<'a, 'b>,
+    experiments: &[&str],
+    points: &[(f64, f64)],
+    ranges: ((f64, f64), (f64, f64)),
+) -> Result<(), Failure> {
+    for (i, name) in experiments.iter().enumerate() {
+        let color = color(i);
+        // A rectangle, because circles are dots.
+        let key = move |(x, y)| Rectangle::new([(x, y - 5), (x + 10, y + 5)], color.filled());
+        chart
+            .draw_series(std::iter::empty::<Circle<(f64, f64), i32>>())?
+            .label(*name)
+            .legend(key);
+    }
+    chart
+        .configure_series_labels()
+        .position(free_corner(points, ranges, experiments.len()))
+        .background_style(WHITE.mix(0.8))
+        .border_style(BLACK.mix(0.2))
+        .label_font((FONT, 15))
+        .draw()?;
     Ok(())
 }
 

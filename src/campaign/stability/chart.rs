@@ -69,72 +69,79 @@ pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
         }
     }
     for (case, of) in report.cases() {
-        let over_frames = |value: &dyn Fn(&FrameScore) -> Option<f64>, part: &str| -> Vec<Line> {
-            let line = |r: &&CaseRecord| {
-                let points = r
-                    .part(part)?
-                    .frames
-                    .iter()
-                    .filter_map(|f| Some((f.frame as f64, value(f)?)));
-                let points: Vec<(f64, f64)> = points.collect();
-                (points.len() > 1).then(|| Line {
-                    name: r.about.method.clone(),
-                    points,
-                    grey: false,
-                })
-            };
-            of.iter().filter_map(line).collect()
-        };
-        // The reference is the same for all methods, so the first one's is taken.
-        let grey = |lines: Vec<Line>, name: &str| {
-            lines.into_iter().next().map(|l| Line {
-                name: name.into(),
-                grey: true,
-                ..l
-            })
-        };
-        let mut add = |name: &str, what: &str, unit: &str, lines: Vec<Line>| {
-            let title = format!("{case}: {what}");
-            let svg = frames_chart(&title, unit, &lines)?;
-            let chart = |svg| Chart {
-                name: file_name(&format!("{case} {name}")),
-                case: Some(case.clone()),
-                svg,
-            };
-            out.extend(svg.map(chart));
-            Ok::<(), LabError>(())
-        };
-        for part in std::iter::once("total").chain(focus.map(|f| f.0)) {
-            let mut lines = over_frames(&|f| f.change.map(|c| c.rms), part);
-            lines.extend(grey(
-                over_frames(&|f| f.noise, part),
-                "noise of the reference",
-            ));
-            let what = format!("E_t of {part}");
-            add(&what, &what, "radiance", lines)?;
-        }
-        let Some((part, title)) = focus else { continue };
-        let measured = || of.iter().filter_map(|r| r.done());
-        if measured().any(|m| m.event.is_some()) {
-            add(
-                "error",
-                &format!("relMSE of {title}"),
-                "relMSE",
-                over_frames(&|f| f.relmse, part),
-            )?;
-        }
-        if measured().any(|m| m.parts.values().any(|p| p.step.is_some())) {
-            let mut lines = over_frames(&|f| f.mean, part);
-            lines.extend(grey(over_frames(&|f| f.reference_mean, part), "reference"));
-            add(
-                "response",
-                &format!("mean luminance of {title}"),
-                "radiance",
-                lines,
-            )?;
-        }
+        case_charts(&case, &of, focus, &mut out)?;
     }
     Ok(out)
+}
+
+/// The charts of one case over its frames.
+fn case_charts(
+    case: &str,
+    of: &[&CaseRecord],
+    focus: Option<(&str, &str)>,
+    out: &mut Vec<Chart>,
+) -> Result<(), LabError> {
+    let over_frames = |value: Score, part: &str| over_frames(of, value, part);
+    // The reference is the same for all methods, so the first one's is taken.
+    let grey = |lines: Vec<Line>, name: &str| {
+        lines.into_iter().next().map(|l| Line {
+            name: name.into(),
+            grey: true,
+            ..l
+        })
+    };
+    let mut add = |name: &str, what: &str, unit: &str, lines: Vec<Line>| {
+        let title = format!("{case}: {what}");
+        let svg = frames_chart(&title, unit, &lines)?;
+        let chart = |svg| Chart {
+            name: file_name(&format!("{case} {name}")),
+            case: Some(case.into()),
+            svg,
+        };
+        out.extend(svg.map(chart));
+        Ok::<(), LabError>(())
+    };
+    for part in std::iter::once("total").chain(focus.map(|f| f.0)) {
+        let mut lines = over_frames(|f| f.change.map(|c| c.rms), part);
+        lines.extend(grey(
+            over_frames(|f| f.noise, part),
+            "noise of the reference",
+        ));
+        let what = format!("E_t of {part}");
+        add(&what, &what, "radiance", lines)?;
+    }
+    let Some((part, title)) = focus else {
+        return Ok(());
+    };
+    let measured = || of.iter().filter_map(|r| r.done());
+    if measured().any(|m| m.event.is_some()) {
+        let lines = over_frames(|f| f.relmse, part);
+        add("error", &format!("relMSE of {title}"), "relMSE", lines)?;
+    }
+    if measured().any(|m| m.parts.values().any(|p| p.step.is_some())) {
+        let mut lines = over_frames(|f| f.mean, part);
+        lines.extend(grey(over_frames(|f| f.reference_mean, part), "reference"));
+        let what = format!("mean luminance of {title}");
+        add("response", &what, "radiance", lines)?;
+    }
+    Ok(())
+}
+
+/// A score of a frame.
+type Score = fn(&FrameScore) -> Option<f64>;
+
+/// A line for each result that has several scores of a part.
+fn over_frames(of: &[&CaseRecord], value: Score, part: &str) -> Vec<Line> {
+    let line = |r: &&CaseRecord| {
+        let point = |f: &FrameScore| Some((f.frame as f64, value(f)?));
+        let points: Vec<_> = r.part(part)?.frames.iter().filter_map(point).collect();
+        (points.len() > 1).then(|| Line {
+            name: r.about.method.clone(),
+            points,
+            grey: false,
+        })
+    };
+    of.iter().filter_map(line).collect()
 }
 
 /// Values by frame, `None` if all are 0.

@@ -46,30 +46,9 @@ pub(super) fn costs(
     options: &Options,
 ) -> Result<Vec<Cost>, LabError> {
     let charted = |m: &&Method| chart.groups.0.iter().any(|g| g.1.value.contains(&m.name));
-    let names: Vec<&Method> = suite
-        .methods
-        .iter()
-        .take(1)
-        .chain(suite.methods.iter().skip(1).filter(charted))
-        .collect();
-    // A suite of all candidates in one case. Its plan checks every value and computes every
-    // identifier.
-    let timed = Suite {
-        methods: names.iter().flat_map(|m| chart.variants(m)).collect(),
-        cases: suite
-            .cases
-            .iter()
-            .find(|c| chart.motions.first() == Some(&c.name))
-            .cloned()
-            .into_iter()
-            .collect(),
-        ..suite.clone()
-    };
-    let options = Options {
-        only: Vec::new(),
-        ..options.clone()
-    };
-    let jobs = plan(runner, &timed, &options)?;
+    let (first, others) = suite.methods.split_at(suite.methods.len().min(1));
+    let names: Vec<&Method> = first.iter().chain(others.iter().filter(charted)).collect();
+    let jobs = candidate_jobs(runner, suite, chart, &names, options)?;
     let first = jobs
         .first()
         .ok_or_else(|| LabError::Request("a chart needs a method and a case".into()))?;
@@ -78,29 +57,8 @@ pub(super) fn costs(
     let mut costs: Vec<Cost> = Vec::new();
     let mut todo: Vec<Open> = Vec::new();
     for method in &names {
-        let settings = chart.varied(&method.name);
         let own = jobs.iter().filter(|j| j.method == method.name);
-        let texts = settings
-            .iter()
-            .map(|s| s.text.clone())
-            .chain(settings.is_empty().then(String::new));
-        let cost = Cost {
-            method: method.name.clone(),
-            parameter: settings
-                .first()
-                .map_or(String::new(), |s| s.name.value.clone()),
-            first: first.work.clone(),
-            candidates: own
-                .clone()
-                .zip(texts)
-                .map(|(j, value)| Candidate {
-                    value,
-                    work: j.work.clone(),
-                    ..Candidate::default()
-                })
-                .collect(),
-            chosen: None,
-        };
+        let cost = untimed(chart, method, own.clone(), first);
         match kept.iter().find(|k| same(k, &cost)) {
             Some(kept) => costs.push(kept.clone()),
             None => {
@@ -117,6 +75,88 @@ pub(super) fn costs(
         told(runner, job, 0, of);
         Ok((time(runner, job), time(runner, first)?.0))
     })?;
+    time_all(runner, first, &todo, &mut costs)?;
+    for cost in costs.iter_mut().filter(|c| c.chosen.is_none()) {
+        choose(cost)?;
+    }
+    runner.warm.sessions.clear();
+    write_file(
+        &path,
+        &json(&Kept {
+            schema: SCHEMA.into(),
+            costs: costs.clone(),
+        })?,
+    )?;
+    // Reads the file back, so that numbers are those of the next run.
+    Ok(Some(read(&path))
+        .filter(|k| k.len() == costs.len())
+        .unwrap_or(costs))
+}
+
+/// The jobs of all candidates in one case, in order.
+fn candidate_jobs(
+    runner: &mut Runner,
+    suite: &Suite,
+    chart: &CostChart,
+    methods: &[&Method],
+    options: &Options,
+) -> Result<Vec<Job>, LabError> {
+    // Its plan checks every value and computes every identifier.
+    let timed = Suite {
+        methods: methods.iter().flat_map(|m| chart.variants(m)).collect(),
+        cases: suite
+            .cases
+            .iter()
+            .find(|c| chart.motions.first() == Some(&c.name))
+            .cloned()
+            .into_iter()
+            .collect(),
+        ..suite.clone()
+    };
+    let options = Options {
+        only: Vec::new(),
+        ..options.clone()
+    };
+    plan(runner, &timed, &options)
+}
+
+/// The cost of a method before it is timed.
+fn untimed<'j>(
+    chart: &CostChart,
+    method: &Method,
+    jobs: impl Iterator<Item = &'j Job>,
+    first: &Job,
+) -> Cost {
+    let settings = chart.varied(&method.name);
+    let texts = settings
+        .iter()
+        .map(|s| s.text.clone())
+        .chain(settings.is_empty().then(String::new));
+    Cost {
+        method: method.name.clone(),
+        parameter: settings
+            .first()
+            .map_or(String::new(), |s| s.name.value.clone()),
+        first: first.work.clone(),
+        candidates: jobs
+            .zip(texts)
+            .map(|(j, value)| Candidate {
+                value,
+                work: j.work.clone(),
+                ..Candidate::default()
+            })
+            .collect(),
+        chosen: None,
+    }
+}
+
+/// Times open candidates in all rounds.
+fn time_all(
+    runner: &mut Runner,
+    first: &Job,
+    todo: &[Open],
+    costs: &mut [Cost],
+) -> Result<(), LabError> {
     let of = ROUNDS * todo.len();
     for round in 0..ROUNDS {
         // The first method is timed again before each method, so that both times are close
@@ -146,47 +186,14 @@ pub(super) fn costs(
                 }
                 Err(lost @ LabError::Vulkan(VulkanError::Lost(_))) => return Err(lost),
                 Err(error) => {
-                    let failed = Some(first_line(&error.to_string()).to_string());
-                    *candidate = Candidate {
-                        failed,
-                        ms: vec![],
-                        first_ms: vec![],
-                        ..candidate.clone()
-                    };
+                    candidate.failed = Some(first_line(&error.to_string()).to_string());
+                    candidate.ms.clear();
+                    candidate.first_ms.clear();
                 }
             }
         }
     }
-    costs
-        .iter_mut()
-        .filter(|c| c.chosen.is_none())
-        .for_each(choose);
-    if let Some(cost) = costs
-        .iter()
-        .find(|c| c.chosen.is_none() && !c.parameter.is_empty())
-    {
-        let why = cost
-            .candidates
-            .iter()
-            .find_map(|c| c.failed.as_deref())
-            .unwrap_or("it takes no time at all");
-        return Err(LabError::Request(format!(
-            "'{}' could be timed at no {}: {why}",
-            cost.method, cost.parameter
-        )));
-    }
-    runner.warm.sessions.clear();
-    write_file(
-        &path,
-        &json(&Kept {
-            schema: SCHEMA.into(),
-            costs: costs.clone(),
-        })?,
-    )?;
-    // Reads the file back, so that numbers are those of the next run.
-    Ok(Some(read(&path))
-        .filter(|k| k.len() == costs.len())
-        .unwrap_or(costs))
+    Ok(())
 }
 
 /// A candidate without a time: index of its method, index among the candidates of the method, and
@@ -251,8 +258,9 @@ fn read(path: &Path) -> Vec<Cost> {
     kept.map_or(Vec::new(), |k| k.costs)
 }
 
-/// Chooses the candidate with the time nearest to the first method's.
-fn choose(cost: &mut Cost) {
+/// Chooses the candidate with the time nearest to the first method's. A method without a parameter
+/// may fail.
+fn choose(cost: &mut Cost) -> Result<(), LabError> {
     let far = |c: &Candidate| c.ratio().map(|r| r.ln().abs());
     let timed = cost
         .candidates
@@ -260,6 +268,15 @@ fn choose(cost: &mut Cost) {
         .enumerate()
         .filter_map(|(i, c)| Some((i, far(c)?)));
     cost.chosen = timed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|c| c.0);
+    if cost.chosen.is_some() || cost.parameter.is_empty() {
+        return Ok(());
+    }
+    let mut failed = cost.candidates.iter().filter_map(|c| c.failed.as_deref());
+    let why = failed.next().unwrap_or("it takes no time at all");
+    Err(LabError::Request(format!(
+        "'{}' could be timed at no {}: {why}",
+        cost.method, cost.parameter
+    )))
 }
 
 /// The suite with the chosen values.

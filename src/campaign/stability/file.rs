@@ -123,71 +123,16 @@ impl Suite {
             path,
             "give the path of a suite, for example configs/stability/motion.ron",
         )?;
-        let warmup = source.frames(&file.warmup, 8, (0, MAX_FRAMES));
-        let frames = source.frames(&file.frames, 24, (1, MAX_FRAMES));
+        let warmup = source.number("frames", &file.warmup, 8, (0, MAX_FRAMES));
+        let frames = source.number("frames", &file.frames, 24, (1, MAX_FRAMES));
         let method = |(name, set): &(Loc<String>, Loc<Entries<RawText>>)| Method {
             name: name.value.clone(),
             set: settings(&set.value),
         };
         let methods: Vec<Method> = file.methods.0.iter().map(method).collect();
-        let mut cases = Vec::new();
-        for (name, case) in &file.cases.0 {
-            let c = &case.value;
-            let own = Case {
-                name: name.value.clone(),
-                variant: String::new(),
-                about: c.about.clone(),
-                set: settings(&c.set),
-                motion: c.motion.clone(),
-                warmup: source.frames(&c.warmup, warmup, (0, MAX_FRAMES)),
-                frames: source.frames(&c.frames, frames, (1, MAX_FRAMES)),
-                own_frames: c.frames.is_some(),
-                methods: c.methods.clone(),
-                voxels: c.voxels,
-            };
-            if let Some(m) = c
-                .methods
-                .iter()
-                .find(|m| !methods.iter().any(|k| k.name == **m))
-            {
-                let message = format!(
-                    "case '{}' names the method '{m}', which is none of the suite's",
-                    name.value
-                );
-                source.wrong(case.at, message);
-            }
-            let variant = |(label, set): &(Loc<String>, Loc<Entries<RawText>>)| {
-                let set = own
-                    .set
-                    .iter()
-                    .cloned()
-                    .chain(settings(&set.value))
-                    .collect();
-                Case {
-                    variant: label.value.clone(),
-                    set,
-                    ..own.clone()
-                }
-            };
-            match c.variants.0.is_empty() {
-                true => cases.push(own),
-                false => cases.extend(c.variants.0.iter().map(variant)),
-            }
-        }
-        if let Some(s) = file
-            .samples
-            .as_ref()
-            .filter(|s| s.value == 0 || s.value > 1 << 20)
-        {
-            source.wrong(s.at, "samples must be 1 to 1048576");
-        }
-        if let Some(b) = file
-            .bounces
-            .as_ref()
-            .filter(|b| b.value == 0 || b.value > 64)
-        {
-            source.wrong(b.at, "bounces must be 1 to 64");
-        }
+        let cases = cases(&file.cases.0, &methods, (warmup, frames), &mut source);
+        let samples = source.number("samples", &file.samples, 64, (1, 1 << 20));
+        let bounces = source.number("bounces", &file.bounces, 1, (1, 64));
         if methods.is_empty() || cases.is_empty() || methods.len() * cases.len() > MAX_JOBS {
             let message = format!(
                 "a suite has at least one method and one case, and at most {MAX_JOBS} pairs of them"
@@ -208,8 +153,8 @@ impl Suite {
             name: source.name(),
             text: source.text(),
             experiment,
-            samples: file.samples.map_or(64, |s| s.value),
-            bounces: file.bounces.map_or(1, |b| b.value),
+            samples,
+            bounces,
             seed: file.seed.unwrap_or(1),
             set: settings(&file.set),
             methods,
@@ -256,6 +201,52 @@ impl Suite {
             Err(errors)
         }
     }
+}
+
+/// The cases with their variants. `warmup` and `frames` are those of the suite.
+fn cases(
+    list: &[(Loc<String>, Loc<CaseFile>)],
+    methods: &[Method],
+    (warmup, frames): (usize, usize),
+    source: &mut Source,
+) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for (name, case) in list {
+        let c = &case.value;
+        let own = Case {
+            name: name.value.clone(),
+            variant: String::new(),
+            about: c.about.clone(),
+            set: settings(&c.set),
+            motion: c.motion.clone(),
+            warmup: source.number("frames", &c.warmup, warmup, (0, MAX_FRAMES)),
+            frames: source.number("frames", &c.frames, frames, (1, MAX_FRAMES)),
+            own_frames: c.frames.is_some(),
+            methods: c.methods.clone(),
+            voxels: c.voxels,
+        };
+        let unknown = |m: &&String| !methods.iter().any(|k| k.name == **m);
+        if let Some(m) = c.methods.iter().find(unknown) {
+            let message = format!(
+                "case '{}' names the method '{m}', which is none of the suite's",
+                name.value
+            );
+            source.wrong(case.at, message);
+        }
+        let variant = |(label, set): &(Loc<String>, Loc<Entries<RawText>>)| {
+            let set = own.set.iter().cloned().chain(settings(&set.value));
+            Case {
+                variant: label.value.clone(),
+                set: set.collect(),
+                ..own.clone()
+            }
+        };
+        match c.variants.0.is_empty() {
+            true => cases.push(own),
+            false => cases.extend(c.variants.0.iter().map(variant)),
+        }
+    }
+    cases
 }
 
 /// Checks a suite without opening its scenes: experiment, graphs, and the parameters of every

@@ -284,21 +284,18 @@ impl Motion {
                 pitch,
                 unit,
             } => {
-                let length = if *unit == Unit::Voxels {
-                    " voxels"
-                } else {
-                    " m"
-                };
+                let is_voxels = *unit == Unit::Voxels;
+                let length = if is_voxels { "voxels" } else { "m" };
                 let parts = [
                     ("dolly", dolly, length),
                     ("strafe", strafe, length),
                     ("rise", rise, length),
+                    ("yaw", yaw, "degrees"),
+                    ("pitch", pitch, "degrees"),
                 ];
-                let turns = [("yaw", yaw, " degrees"), ("pitch", pitch, " degrees")];
-                let moved = parts.iter().chain(&turns).filter(|p| *p.1 != 0.0);
-                let list: Vec<String> = moved
-                    .map(|(name, v, unit)| format!("{name} {v}{unit}"))
-                    .collect();
+                let moved = parts.iter().filter(|p| *p.1 != 0.0);
+                let text = |(name, v, unit): &(&str, &f32, &str)| format!("{name} {v} {unit}");
+                let list: Vec<String> = moved.map(text).collect();
                 format!("camera: {} a frame", list.join(", "))
             }
             Motion::Actors { step, scale } if *scale == one() => {
@@ -308,11 +305,8 @@ impl Motion {
                 step,
                 scale: (x, y, z),
             } => format!("actors of {x} x {y} x {z}: {step} s a frame"),
-            Motion::Light {
-                name,
-                shift: (x, y, z),
-                turn,
-            } => {
+            Motion::Light { name, shift, turn } => {
+                let (x, y, z) = shift;
                 format!("light '{name}': ({x}, {y}, {z}) m and {turn} degrees a frame")
             }
             Motion::Switch { name, at, from, to } => {

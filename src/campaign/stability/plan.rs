@@ -13,6 +13,7 @@ use crate::campaign::runner::{self, Mistakes, Runner};
 use crate::campaign::settings::{Setting, lines, named, set_params};
 use crate::experiment::{Experiment, check_size};
 use crate::files::content_id;
+use crate::graph::Graph;
 use crate::lab::{LabError, camera_of, parts_of};
 use crate::measure::{Frames, reference};
 use crate::results::capture::scene_hash;
@@ -108,6 +109,67 @@ fn job(
     options: &Options,
     (method, case, shaders): (&Method, &Case, &str),
 ) -> Result<Job, LabError> {
+    let (experiment, graph) = experiment(runner, suite, options, (method, case))?;
+    let name = title(&case.name, &case.variant);
+    let wrong = |why: String| LabError::Request(format!("case '{name}': {why}"));
+    let asked = options.frames.filter(|_| !case.own_frames);
+    let frames = asked.unwrap_or(case.frames);
+    check_parts(suite, &graph, experiment.size, frames).map_err(wrong)?;
+    let counts = Frames {
+        warmup: case.warmup,
+        count: frames,
+    };
+    let point = runner.point(experiment, Vec::new(), counts)?;
+    case.motion.check(&point.scene).map_err(wrong)?;
+    let params = point.experiment.params_over(&graph.params)?;
+    let track = ParamTrack::of(&case.motion, &params, case.warmup, frames).map_err(wrong)?;
+    let mut reference_moves = false;
+    if let Some(track) = &track {
+        let Runner { lab, warm, .. } = runner;
+        let shared = warm.graph(&lab.home, reference::GRAPH)?;
+        reference_moves = shared.graph.params.index(&track.name).is_some();
+    }
+    let late = |at: &usize| frames.saturating_sub(2) < *at;
+    if let Some(at) = case.motion.event().filter(late) {
+        return Err(wrong(format!(
+            "what happens at frame {at} needs two frames more, there are {frames}"
+        )));
+    }
+    let cameras = Cameras::of(&case.motion, &point.experiment, &point.scene, &suite.folder)?;
+    let (scene_hash, scene) = match case.motion.scaled_scene(&point.scene) {
+        Some(staged) => (scene_hash(&staged), Arc::new(staged)),
+        None => (point.subject.sha256.clone(), point.scene.clone()),
+    };
+    let start = FrameState {
+        camera: camera_of(&point.experiment, &scene)?,
+        time: point.experiment.time,
+        lights: scene.lights.clone(),
+        setting: None,
+    };
+    let (id, work) = ids(runner, suite, options, (method, case, shaders), point.id);
+    Ok(Job {
+        id,
+        work,
+        method: method.name.clone(),
+        case: case.clone(),
+        experiment: point.experiment,
+        scene,
+        scene_hash,
+        start,
+        cameras,
+        track,
+        reference_moves,
+        frames,
+    })
+}
+
+/// The experiment of a method in a case with the settings of the options, and its graph.
+fn experiment(
+    runner: &mut Runner,
+    suite: &Suite,
+    options: &Options,
+    (method, case): (&Method, &Case),
+) -> Result<(Experiment, Arc<Graph>), LabError> {
     let Runner { lab, warm, .. } = runner;
     let mut params = |graph: &str| {
         warm.graph(&lab.home, graph)
@@ -117,7 +179,7 @@ fn job(
     let mut experiment = suite
         .experiment(method, case, &mut params)
         .map_err(LabError::Input)?;
-    let loaded = warm.graph(&lab.home, &experiment.graph)?.clone();
+    let graph = warm.graph(&lab.home, &experiment.graph)?.graph.clone();
     let other = experiment.graph != suite.experiment.graph;
     let set: Vec<(&str, &str)> = options
         .set
@@ -126,118 +188,65 @@ fn job(
         .collect::<Result<_, LabError>>()?;
     let (text, settings) = lines(set, "=");
     experiment.sources.add("--set".as_ref(), text);
-    let has = |s: &&Setting| !other || loaded.graph.params.index(&s.name.value).is_some();
+    let has = |s: &&Setting| !other || graph.params.index(&s.name.value).is_some();
     set_params(&mut experiment, settings.iter().filter(has));
     experiment.size = options.size.unwrap_or(experiment.size);
     check_size(experiment.size).map_err(LabError::Request)?;
-    let wrong = |why: String| {
-        LabError::Request(format!(
-            "case '{}': {why}",
-            title(&case.name, &case.variant)
-        ))
-    };
-    let frames = options
-        .frames
-        .filter(|_| !case.own_frames)
-        .unwrap_or(case.frames);
-    let names: Vec<String> = parts_of(&loaded.graph)
-        .into_iter()
-        .map(|p| p.name)
-        .collect();
+    Ok((experiment, graph))
+}
+
+/// Checks the parts of the light and the number of values.
+fn check_parts(
+    suite: &Suite,
+    graph: &Graph,
+    (width, height): (u32, u32),
+    frames: usize,
+) -> Result<(), String> {
+    let names: Vec<String> = parts_of(graph).into_iter().map(|p| p.name).collect();
     let parts = names.len() as u64;
-    let values =
-        u64::from(experiment.size.0) * u64::from(experiment.size.1) * frames as u64 * parts;
+    let values = u64::from(width) * u64::from(height) * frames as u64 * parts;
     if values > MAX_VALUES {
-        return Err(wrong(format!(
-            "{frames} frames of {}x{} and {parts} parts are too many to keep; ask for fewer with --frames, or a smaller --size",
-            experiment.size.0, experiment.size.1
-        )));
+        return Err(format!(
+            "{frames} frames of {width}x{height} and {parts} parts are too many to keep; ask for fewer with --frames, or a smaller --size"
+        ));
     }
     if parts == 0 {
-        return Err(wrong(format!(
+        return Err(format!(
             "graph '{}' has neither `parts` nor `hdr`",
-            loaded.graph.name
-        )));
+            graph.name
+        ));
     }
     if !names.contains(&suite.pictures) {
         let (part, known) = (&suite.pictures, names.join(", "));
-        return Err(wrong(format!(
+        return Err(format!(
             "no pictures of '{part}': the parts of graph '{}' are {known}",
-            loaded.graph.name
-        )));
+            graph.name
+        ));
     }
-    let point = runner.point(
-        experiment,
-        Vec::new(),
-        Frames {
-            warmup: case.warmup,
-            count: frames,
-        },
-    )?;
-    case.motion.check(&point.scene).map_err(wrong)?;
-    let params = point.experiment.params_over(&loaded.graph.params)?;
-    let track = ParamTrack::of(&case.motion, &params, case.warmup, frames).map_err(wrong)?;
-    let reference_moves = match &track {
-        Some(track) => {
-            let shared = &runner
-                .warm
-                .graph(&runner.lab.home, reference::GRAPH)?
-                .graph
-                .params;
-            shared.index(&track.name).is_some()
-        }
-        None => false,
-    };
-    if let Some(at) = case
-        .motion
-        .event()
-        .filter(|at| frames.saturating_sub(2) < *at)
-    {
-        return Err(wrong(format!(
-            "what happens at frame {at} needs two frames more, there are {frames}"
-        )));
-    }
-    let cameras = Cameras::of(&case.motion, &point.experiment, &point.scene, &suite.folder)?;
-    let (scene, hash) = match case.motion.scaled_scene(&point.scene) {
-        Some(staged) => {
-            let hash = scene_hash(&staged);
-            (Arc::new(staged), hash)
-        }
-        None => (point.scene.clone(), point.subject.sha256.clone()),
-    };
-    let start = FrameState {
-        camera: camera_of(&point.experiment, &scene)?,
-        time: point.experiment.time,
-        lights: scene.lights.clone(),
-        setting: None,
-    };
+    Ok(())
+}
+
+/// [`Job::id`] and [`Job::work`].
+fn ids(
+    runner: &Runner,
+    suite: &Suite,
+    options: &Options,
+    (method, case, shaders): (&Method, &Case, &str),
+    point: String,
+) -> (String, String) {
     let samples = options
         .reference
         .then(|| options.samples.unwrap_or(suite.samples));
     let device = &runner.lab.gpu.info;
     let device = format!("{} {} {}", device.name, device.driver, device.api);
-    let work = content_id([point.id, format!("{:?}", case.motion), device], DIGITS);
+    let work = content_id([point, format!("{:?}", case.motion), device], DIGITS);
     let asked = format!(
         "{samples:?} {} {} {} {} {shaders}",
         suite.bounces, suite.seed, case.voxels, suite.pictures
     );
     // Equal jobs with different names are two rows.
     let names = format!("{:?} {:?} {:?}", method.name, case.name, case.variant);
-    let id = content_id([&work, &asked, &names], DIGITS);
-    Ok(Job {
-        id,
-        work,
-        method: method.name.clone(),
-        case: case.clone(),
-        experiment: point.experiment,
-        scene,
-        scene_hash: hash,
-        start,
-        cameras,
-        track,
-        reference_moves,
-        frames,
-    })
+    (content_id([&work, &asked, &names], DIGITS), work)
 }
 
 impl runner::Job for Job {

@@ -2,7 +2,7 @@
 
 use super::chart_spec::CostChart;
 use super::record::{Cost, PartResult, Report};
-use crate::campaign::charts::{Axis, color, cut, drawn, plane, text};
+use crate::campaign::charts::{Area, Axis, Failure, color, cut, drawn, plane, text};
 use crate::campaign::page::figure;
 use crate::lab::LabError;
 use crate::metrics::{NOISE_FACTOR, RELMSE, within_noise};
@@ -235,6 +235,50 @@ fn values(
     Some(list)
 }
 
+fn draw_panel(
+    area: &Area,
+    panel: &Area,
+    (title, rows): (&str, &[Row]),
+    (x, y): (&Axis, &Axis),
+) -> Result<(), Failure> {
+    let mut chart = plane(panel, title, x, y)?;
+    let mut placed: Vec<(i32, i32)> = Vec::new();
+    let mut dots = dots(rows);
+    dots.sort_by(|a, b| b.2.value.total_cmp(&a.2.value));
+    for (name, error, change, color) in &dots {
+        let at = (error.value, change.value);
+        let bars = [
+            vec![(error.without, at.1), at],
+            vec![(at.0, change.without), at],
+        ];
+        chart.draw_series(bars.map(|bar| PathElement::new(bar, color.stroke_width(1))))?;
+        let hollow = error.noisy() || change.noisy();
+        let inside = if hollow { WHITE } else { *color };
+        chart.draw_series([
+            Circle::new(at, 5, inside.filled()),
+            Circle::new(at, 5, color.stroke_width(2)),
+        ])?;
+        // Labels are next to their dots: on the left above the bar, and below labels of
+        // close dots.
+        let dot = chart.backend_coord(&at);
+        let (left, width) = (panel.get_pixel_range().0.start, panel.dim_in_pixel().0);
+        let right = dot.0 - left < i32::try_from(width)? * 2 / 3;
+        let near = placed.iter().filter(|p| (p.0 - dot.0).abs() < 200);
+        let line = near
+            .map(|p| p.1 + LABEL)
+            .fold(dot.1 - if right { 0 } else { 10 }, i32::max);
+        placed.push((dot.0, line));
+        let (side, anchor) = if right {
+            (9, HPos::Left)
+        } else {
+            (-9, HPos::Right)
+        };
+        let style = text(13, anchor, VPos::Center);
+        area.draw(&Text::new(cut(name, 34), (dot.0 + side, line), style))?;
+    }
+    Ok(())
+}
+
 /// Axis over the range of some values.
 fn axis(title: &str, values: impl Iterator<Item = f64> + Clone) -> Axis {
     let most = values.clone().fold(0.0, f64::max);
@@ -273,48 +317,7 @@ fn draw(spec: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String
         .saturating_mul(u32::try_from(groups.len()).unwrap_or(u32::MAX));
     let svg = drawn("cost", (width, PANEL.1), |area| {
         for ((title, rows), panel) in groups.iter().zip(area.split_evenly((1, groups.len()))) {
-            let mut chart = plane(&panel, title, &x, &y)?;
-            let mut placed: Vec<(i32, i32)> = Vec::new();
-            let mut dots = dots(rows);
-            dots.sort_by(|a, b| b.2.value.total_cmp(&a.2.value));
-            for (name, error, change, color) in &dots {
-                let at = (error.value, change.value);
-                let bars = [
-                    vec![(error.without, at.1), at],
-                    vec![(at.0, change.without), at],
-                ];
-                chart.draw_series(bars.map(|bar| PathElement::new(bar, color.stroke_width(1))))?;
-                let hollow = error.noisy() || change.noisy();
-                let inside = if hollow {
-                    WHITE.filled()
-                } else {
-                    color.filled()
-                };
-                chart.draw_series([
-                    Circle::new(at, 5, inside),
-                    Circle::new(at, 5, color.stroke_width(2)),
-                ])?;
-                // Labels are next to their dots: on the left above the bar, and below labels of
-                // close dots.
-                let dot = chart.backend_coord(&at);
-                let (left, width) = (panel.get_pixel_range().0.start, panel.dim_in_pixel().0);
-                let right = dot.0 - left < i32::try_from(width)? * 2 / 3;
-                let near = placed.iter().filter(|p| (p.0 - dot.0).abs() < 200);
-                let line = near
-                    .map(|p| p.1 + LABEL)
-                    .fold(dot.1 - if right { 0 } else { 10 }, i32::max);
-                placed.push((dot.0, line));
-                let (side, anchor) = if right {
-                    (9, HPos::Left)
-                } else {
-                    (-9, HPos::Right)
-                };
-                area.draw(&Text::new(
-                    cut(name, 34),
-                    (dot.0 + side, line),
-                    text(13, anchor, VPos::Center),
-                ))?;
-            }
+            draw_panel(area, &panel, (title, rows), (&x, &y))?;
         }
         Ok(())
     })?;

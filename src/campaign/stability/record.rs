@@ -89,7 +89,7 @@ pub struct Worst {
 }
 
 /// The scores of a method in a case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Median of the frames' time on the device, ms.
     pub frame_ms: f64,

@@ -31,9 +31,8 @@ pub fn run(
         jobs = plan(&mut runner, &chosen, options)?;
     }
     let folder = folder(&options.folder);
-    let samples = options.samples.unwrap_or(suite.samples);
     let tracing = options.reference.then_some(Tracing {
-        samples,
+        samples: options.samples.unwrap_or(suite.samples),
         bounces: suite.bounces,
         seed: suite.seed,
     });
@@ -47,46 +46,38 @@ pub fn run(
     };
     let mut measured =
         |runner: &mut Runner, job: &Job| measure(runner, job, tracing, &suite.pictures);
-    let results = runner.run(
-        &folder,
-        &jobs.iter().collect::<Vec<_>>(),
-        &mut kept,
-        &mut measured,
-    )?;
+    let jobs: Vec<&Job> = jobs.iter().collect();
+    let results = runner.run(&folder, &jobs, &mut kept, &mut measured)?;
     let counts = Counts::of(&results);
-    let graph = &runner
-        .warm
-        .graph(&runner.lab.home, &suite.experiment.graph)?
-        .graph;
+    let Runner { lab, warm, .. } = &mut runner;
+    let graph = &warm.graph(&lab.home, &suite.experiment.graph)?.graph;
     let focus = focus_of(graph).map(|p| (p.name.clone(), p.title.clone()));
-    let tables = parts_of(graph)
-        .into_iter()
-        .filter(|p| p.kind == Kind::Radiance)
-        .map(|p| p.name)
-        .collect();
+    let tables = parts_of(graph).into_iter();
+    let tables = tables.filter(|p| p.kind == Kind::Radiance).map(|p| p.name);
     let report = Report {
         schema: SCHEMA.into(),
         version: env!("CARGO_PKG_VERSION").into(),
         suite: suite.name.clone(),
         text: suite.text.clone(),
-        reference: options.reference.then_some((samples, suite.bounces)),
-        tables,
+        reference: tracing.map(|t| (t.samples, t.bounces)),
+        tables: tables.collect(),
         focus,
         costs,
         results,
     };
-    let chart = suite.chart.clone().map(|mut chart| {
-        chart.part = chart.part.or_else(|| report.focus.clone().map(|f| f.0));
-        chart
-    });
-    write(&report, chart.as_ref(), options)?;
+    write(&report, suite.chart.clone(), options)?;
     Ok((counts, report))
 }
 
 /// Tables, JSON, charts and the page.
-fn write(report: &Report, spec: Option<&CostChart>, options: &Options) -> Result<(), LabError> {
+fn write(report: &Report, spec: Option<CostChart>, options: &Options) -> Result<(), LabError> {
+    let spec = spec.map(|mut chart| {
+        chart.part = chart.part.or_else(|| report.focus.clone().map(|f| f.0));
+        chart
+    });
     let charts = chart::charts(report)?;
-    let plot = spec.map(|spec| Plot::new(report, spec)).transpose()?;
+    let plot = spec.as_ref().map(|spec| Plot::new(report, spec));
+    let plot = plot.transpose()?;
     let mut files = vec![
         ("stability.json".to_string(), json(report)?),
         ("stability.csv".into(), table::rows(report)?.into_bytes()),

@@ -34,6 +34,17 @@ struct Bad {
     panels: Panels,
 }
 
+/// The scores of the frames so far.
+#[derive(Default)]
+struct Scores {
+    /// By part of the light.
+    series: BTreeMap<String, PartSeries>,
+    worst: Option<Bad>,
+    warnings: Vec<String>,
+    /// Samples per pixel of the last reference.
+    samples: u64,
+}
+
 /// Runs a job and scores each part of its light by frame. The worst frame of the part `pictures`
 /// becomes a picture.
 pub(super) fn measure(
@@ -42,28 +53,10 @@ pub(super) fn measure(
     tracing: Option<Tracing>,
     pictures: &str,
 ) -> Result<(Measured, Vec<File>), LabError> {
-    let loaded = runner
-        .warm
-        .graph(&runner.lab.home, &job.experiment.graph)?
-        .clone();
+    let mut session = session_of(runner, job)?;
     let motion = &job.case.motion;
-    let mut wanted: Vec<String> = parts_of(&loaded.graph)
-        .into_iter()
-        .map(|p| p.texture)
-        .collect();
-    if job.case.voxels && oracle::makes_voxels(&loaded.graph) || motion.in_voxels() {
-        wanted.extend(oracle::wanted(&loaded.graph)?);
-    }
-    let reuse = runner.warm.sessions.get(&job.method);
-    let mut session =
-        runner
-            .lab
-            .build(&job.experiment, &loaded, job.scene.clone(), wanted, reuse)?;
     let cell = cell_of(&mut session, job)?;
-    let (mut times, mut warnings) = (Vec::new(), Vec::new());
-    let mut series: BTreeMap<String, PartSeries> = BTreeMap::new();
-    let mut worst: Option<Bad> = None;
-    let mut samples = 0;
+    let (mut times, mut scores) = (Vec::new(), Scores::default());
     let mut lights = job.scene.lights.clone();
     let mut before: Option<(FrameState, Option<Arc<Reference>>)> = None;
     let warmup = i64::try_from(job.case.warmup).unwrap_or(0);
@@ -76,9 +69,7 @@ pub(super) fn measure(
         };
         times.extend(session.finish()?);
         for message in session.failed_checks()? {
-            if !warnings.contains(&message) {
-                warnings.push(message);
-            }
+            scores.warn(message);
         }
         let changed = before.as_ref().is_none_or(|b| b.0 != state);
         let reference = match (&before, tracing) {
@@ -86,85 +77,122 @@ pub(super) fn measure(
             (Some((_, Some(reference))), _) if !changed => Some(reference.clone()),
             (_, Some(tracing)) => reference_of(runner, job, &state, tracing)?,
         };
-        if let Some(reference) = &reference {
-            if frame > 0 && reference.samples != samples {
-                let unequal = "references have different numbers of samples, some were kept with more: noise is larger";
-                if !warnings.iter().any(|w| w == unequal) {
-                    warnings.push(unequal.into());
-                }
-            }
-            samples = reference.samples;
-        }
+        scores.note(reference.as_deref(), frame);
         let earlier = before.as_ref().and_then(|b| b.1.as_ref());
-        for (part, x) in session.parts()? {
-            let lost = x
-                .rgb
-                .iter()
-                .filter(|c| !c.iter().all(|v| v.is_finite()))
-                .count();
-            let note = format!("pixels of '{part}' are no number and left out of its scores");
-            if lost > 0 && !warnings.iter().any(|w| w.ends_with(&note)) {
-                warnings.push(format!("frame {frame}, perhaps others too: {lost} {note}"));
-            }
-            let known = known(&part, reference.as_deref(), earlier.map(|t| &**t), changed);
-            let own = series.entry(part.clone()).or_insert_with(PartSeries::new);
-            let shown = (part == pictures).then(|| Panels::new(own.before(), &x, known));
-            let bad = own.add(x, known, number + 1 == frames);
-            if let (Some(panels), Some(bad)) = (shown, bad.or((frame == 0).then_some(0.0)))
-                && worst.as_ref().is_none_or(|w| bad > w.bad || w.frame == 0)
-            {
-                worst = Some(Bad { frame, bad, panels });
-            }
-        }
+        let is_last = number + 1 == frames;
+        scores.add(&mut session, pictures, (frame, is_last), |part| {
+            known(part, reference.as_deref(), earlier.map(|t| &**t), changed)
+        })?;
         before = Some((state, reference));
     }
-    let times: Vec<f64> = times
-        .iter()
-        .skip(job.case.warmup)
-        .map(|t| t.gpu_ms)
-        .collect();
+    let timed = times.iter().skip(job.case.warmup);
+    let frame_ms = median(timed.map(|t| t.gpu_ms).collect());
     let last = before.map_or(job.start.time, |b| b.0.time);
-    let voxels = voxels(&mut session, job, last, &mut warnings)?;
-    runner
-        .warm
-        .sessions
-        .insert(job.method.clone(), session.share());
-    let (event, switched) = (motion.event(), matches!(motion, Motion::Switch { .. }));
-    let memory_bytes = session
-        .program
-        .memory(&session.graph)
-        .iter()
-        .map(|m| m.1)
-        .sum();
-    let parts = series
-        .into_iter()
-        .map(|(name, s)| (name, s.finish(event, switched)))
-        .collect();
-    let shown = worst
-        .as_ref()
-        .map(|w| Ok::<_, LabError>((picture(&job.id), w.panels.png()?)))
-        .transpose()?;
-    let worst = worst.map(|w| Worst {
-        part: pictures.into(),
-        frame: w.frame,
-        full: w.panels.full(),
-        panels: w.panels.names(),
-    });
-    let frame_ms = median(times);
-    let files = shown.into_iter().collect();
-    Ok((
-        Measured {
-            frame_ms,
-            memory_bytes,
-            samples,
+    let voxels = voxels(&mut session, job, last, &mut scores.warnings)?;
+    let sessions = &mut runner.warm.sessions;
+    sessions.insert(job.method.clone(), session.share());
+    let memory = session.program.memory(&session.graph);
+    let (measured, files) = scores.finish(job, pictures)?;
+    let measured = Measured {
+        frame_ms,
+        memory_bytes: memory.iter().map(|m| m.1).sum(),
+        voxels,
+        ..measured
+    };
+    Ok((measured, files))
+}
+
+impl Scores {
+    /// Adds a warning, once.
+    fn warn(&mut self, message: String) {
+        if !self.warnings.contains(&message) {
+            self.warnings.push(message);
+        }
+    }
+
+    /// Takes the samples of a frame's reference.
+    fn note(&mut self, reference: Option<&Reference>, frame: usize) {
+        let Some(reference) = reference else { return };
+        if frame > 0 && reference.samples != self.samples {
+            let unequal = "references have different numbers of samples, some were kept with more: noise is larger";
+            self.warn(unequal.into());
+        }
+        self.samples = reference.samples;
+    }
+
+    /// The measurement without times, memory and voxels, and its picture.
+    fn finish(self, job: &Job, pictures: &str) -> Result<(Measured, Vec<File>), LabError> {
+        let motion = &job.case.motion;
+        let (event, switched) = (motion.event(), matches!(motion, Motion::Switch { .. }));
+        let finish = |(name, s): (String, PartSeries)| (name, s.finish(event, switched));
+        let mut files = Vec::new();
+        if let Some(worst) = &self.worst {
+            files.push((picture(&job.id), worst.panels.png()?));
+        }
+        let worst = self.worst.map(|w| Worst {
+            part: pictures.into(),
+            frame: w.frame,
+            full: w.panels.full(),
+            panels: w.panels.names(),
+        });
+        let measured = Measured {
+            samples: self.samples,
             event,
-            parts,
-            voxels,
+            parts: self.series.into_iter().map(finish).collect(),
             worst,
-            warnings,
-        },
-        files,
-    ))
+            warnings: self.warnings,
+            ..Measured::default()
+        };
+        Ok((measured, files))
+    }
+
+    /// Scores the parts of the session's last frame.
+    fn add<'r>(
+        &mut self,
+        session: &mut Session,
+        pictures: &str,
+        (frame, is_last): (usize, bool),
+        known: impl Fn(&str) -> Known<'r>,
+    ) -> Result<(), LabError> {
+        for (part, x) in session.parts()? {
+            let finite = |c: &&[f32; 3]| c.iter().all(|v| v.is_finite());
+            let lost = x.rgb.len() - x.rgb.iter().filter(finite).count();
+            let note = format!("pixels of '{part}' are no number and left out of its scores");
+            if lost > 0 && !self.warnings.iter().any(|w| w.ends_with(&note)) {
+                self.warnings
+                    .push(format!("frame {frame}, perhaps others too: {lost} {note}"));
+            }
+            let known = known(&part);
+            let own = self
+                .series
+                .entry(part.clone())
+                .or_insert_with(PartSeries::new);
+            let shown = (part == pictures).then(|| Panels::new(own.before(), &x, known));
+            let bad = own.add(x, known, is_last);
+            if let (Some(panels), Some(bad)) = (shown, bad.or((frame == 0).then_some(0.0)))
+                && self
+                    .worst
+                    .as_ref()
+                    .is_none_or(|w| bad > w.bad || w.frame == 0)
+            {
+                self.worst = Some(Bad { frame, bad, panels });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A session whose parts of the light, and voxels if they are needed, can be read.
+fn session_of(runner: &mut Runner, job: &Job) -> Result<Session, LabError> {
+    let Runner { lab, warm, .. } = runner;
+    let loaded = warm.graph(&lab.home, &job.experiment.graph)?.clone();
+    let parts = parts_of(&loaded.graph).into_iter();
+    let mut wanted: Vec<String> = parts.map(|p| p.texture).collect();
+    if job.case.voxels && oracle::makes_voxels(&loaded.graph) || job.case.motion.in_voxels() {
+        wanted.extend(oracle::wanted(&loaded.graph)?);
+    }
+    let (scene, reuse) = (job.scene.clone(), warm.sessions.get(&job.method));
+    lab.build(&job.experiment, &loaded, scene, wanted, reuse)
 }
 
 /// Sets a parameter for the next frame.

@@ -48,18 +48,11 @@ impl Sweep {
             path,
             "give the path of a sweep, for example configs/sweeps/cones.ron",
         )?;
-        let experiments: Vec<Experiment> = file
-            .experiments
-            .0
-            .iter()
-            .filter_map(|e| source.experiment(e))
-            .collect();
-        let beside: Vec<Experiment> = file
-            .beside
-            .0
-            .iter()
-            .filter_map(|e| source.experiment(e))
-            .collect();
+        let mut read = |list: &Items<String>| -> Vec<Experiment> {
+            let list = list.0.iter();
+            list.filter_map(|e| source.experiment(e)).collect()
+        };
+        let (experiments, beside) = (read(&file.experiments), read(&file.beside));
         if file.experiments.0.is_empty() {
             let place = Place {
                 file: path.to_path_buf(),
@@ -70,10 +63,11 @@ impl Sweep {
                 "`experiments` is empty: name at least one",
             ));
         }
-        let warmup = source.frames(&file.warmup, DEFAULT_FRAMES.warmup, (0, MAX_FRAMES));
+        let mut frames =
+            |value, default, least| source.number("frames", value, default, (least, MAX_FRAMES));
         let frames = Frames {
-            warmup,
-            count: source.frames(&file.frames, DEFAULT_FRAMES.count, (1, MAX_FRAMES)),
+            warmup: frames(&file.warmup, DEFAULT_FRAMES.warmup, 0),
+            count: frames(&file.frames, DEFAULT_FRAMES.count, 1),
         };
         let (axes, mut names) = axes(&file.axes, experiments.len(), &mut source);
         if !source.errors.is_empty() {
@@ -86,23 +80,17 @@ impl Sweep {
         if bounces.is_empty() {
             bounces.push(ALL_BOUNCES);
         }
-        let (name, text, folder, fixed) = (
-            source.name(),
-            source.text(),
-            source.folder(),
-            settings(&file.set),
-        );
         Ok(Sweep {
-            name,
-            text,
+            name: source.name(),
+            text: source.text(),
             experiments,
             beside,
             names,
             frames,
             bounces,
-            fixed,
+            fixed: settings(&file.set),
             axes,
-            folder,
+            folder: source.folder(),
         })
     }
 }

@@ -24,7 +24,19 @@ struct Row<'c> {
     parts: BTreeMap<String, BTreeMap<String, f64>>,
 }
 
-impl Row<'_> {
+impl<'c> Row<'c> {
+    fn new((planned, record): &'c (ManifestPoint, Option<PointRecord>)) -> Row<'c> {
+        let record = record.as_ref();
+        Row {
+            planned,
+            record,
+            parts: record
+                .and_then(|r| r.done())
+                .map(parts_of)
+                .unwrap_or_default(),
+        }
+    }
+
     fn point(&self) -> Option<&Point> {
         self.record?.done()
     }
@@ -33,20 +45,7 @@ impl Row<'_> {
 /// Comma-separated values (RFC 4180), a line for each point in order. Columns that end in ` ms` are
 /// times and differ between runs. All others are the same on one device.
 pub fn csv(collected: &Collected) -> Result<String, LabError> {
-    let parts = |r: &Option<PointRecord>| {
-        r.as_ref()
-            .and_then(|r| r.done())
-            .map(parts_of)
-            .unwrap_or_default()
-    };
-    let points = collected.points.iter();
-    let rows: Vec<Row> = points
-        .map(|(planned, record)| Row {
-            planned,
-            record: record.as_ref(),
-            parts: parts(record),
-        })
-        .collect();
+    let rows: Vec<Row> = collected.points.iter().map(Row::new).collect();
     let points = rows.iter().filter_map(Row::point);
     let passes: IndexSet<&str> = points
         .flat_map(|p| &p.stats.passes)
