@@ -7,6 +7,7 @@ use super::evaluated::Evaluated;
 use super::link::Linked;
 use super::param::{Param, Params};
 use super::plan::{Barrier, Plan, Step, Use, Work, pack, schedule};
+use std::borrow::Borrow;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -14,92 +15,70 @@ use std::fmt::Write;
 /// names of the others.
 pub fn summary(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> String {
     let graph = set.graph;
-    let (ran, all, params) = (
-        plan.passes().len(),
-        graph.passes.len(),
-        graph.params.offered().count(),
-    );
-    let mut out = format!(
-        "graph {}: {ran} of {all} passes run, {params} parameters",
-        graph.name
-    );
+    let (ran, all) = (plan.passes().len(), graph.passes.len());
+    let params = graph.params.offered().count();
+    let head = format!("graph {}: {ran} of {all} passes run", graph.name);
+    let mut out = format!("{head}, {params} parameters");
     if plan.convergence.fresh > 1 {
         let _ = write!(out, "; converges in {} frames", plan.convergence.fresh);
     }
     out.push_str("\n\n");
     let rows = rows(graph, linked, plan);
     let width = |column: usize| rows.iter().map(|r| r[column].len()).max().unwrap_or(0);
-    let widths = [0, 1, 2].map(width);
+    let [a, b, c] = [0, 1, 2].map(width);
     for [stage, pass, shaders, results] in &rows {
-        let line = format!(
-            "{stage:<0$}  {pass:<1$}  {shaders:<2$}  {results}",
-            widths[0], widths[1], widths[2]
-        );
+        let line = format!("{stage:<a$}  {pass:<b$}  {shaders:<c$}  {results}");
         let _ = writeln!(out, "{}", line.trim_end());
     }
     out.push('\n');
     for settling in &plan.settling {
-        let mut passes: Vec<&str> = settling
-            .steps
-            .iter()
-            .map(|i| graph.pass_name(plan.steps[*i].pass))
-            .collect();
+        let name = |i: &usize| graph.pass_name(plan.steps[*i].pass);
+        let mut passes: Vec<&str> = settling.steps.iter().map(name).collect();
         passes.dedup();
-        let _ = writeln!(
-            out,
-            "after {} still frames rest: {}",
-            settling.frames,
-            passes.join(", ")
-        );
+        let title = format!("after {} still frames rest", settling.frames);
+        list(&mut out, &title, &passes);
     }
-    let modules = set.params.modules().chain(
-        graph
-            .modules
-            .iter()
-            .map(|(name, file)| (name.as_str(), file.as_str())),
-    );
-    let mut modules: Vec<String> = modules
+    let files = graph.modules.iter();
+    let files = files.map(|(name, file)| (name.as_str(), file.as_str()));
+    let modules = set.params.modules().chain(files);
+    let mut modules: Vec<_> = modules
         .map(|(name, file)| format!("{name} {file}"))
         .collect();
     modules.sort();
-    if !modules.is_empty() {
-        let _ = writeln!(out, "modules: {}", modules.join(", "));
-    }
+    list(&mut out, "modules", &modules);
     let automatic = |p: &Param| Some(format!("{} {} {}", p.name, effective(set, p)?, p.unit));
     let automatic: Vec<String> = set.params.list.iter().filter_map(automatic).collect();
-    if !automatic.is_empty() {
-        let _ = writeln!(out, "automatic: {}", automatic.join(", "));
-    }
-    let mut memory: Vec<(&str, u64)> = plan
-        .made()
+    list(&mut out, "automatic", &automatic);
+    let made = plan.made();
+    let mut memory: Vec<_> = made
         .map(|res| (graph.name_of(res), plan.bytes_of(res)))
         .collect();
     memory.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
-    let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
     let total = mib(memory.iter().map(|(_, bytes)| bytes).sum::<u64>() - shared(plan).1);
-    let largest: Vec<String> = memory
-        .iter()
-        .take(6)
+    let largest = memory.iter().take(6);
+    let largest: Vec<_> = largest
         .map(|(name, bytes)| format!("{name} {:.1}", mib(*bytes)))
         .collect();
-    let _ = writeln!(
-        out,
-        "memory: {total:.1} MiB; the largest: {}",
-        largest.join(", ")
+    list(
+        &mut out,
+        &format!("memory: {total:.1} MiB; the largest"),
+        &largest,
     );
-    if !plan.dropped.is_empty() {
-        let names: Vec<&str> = plan
-            .dropped
-            .iter()
-            .map(|(pass, _)| graph.pass_name(*pass))
-            .collect();
-        let _ = writeln!(
-            out,
-            "left out (--barriers prints why): {}",
-            names.join(", ")
-        );
-    }
+    let dropped = plan.dropped.iter().map(|(pass, _)| graph.pass_name(*pass));
+    let dropped: Vec<&str> = dropped.collect();
+    list(&mut out, "left out (--barriers prints why)", &dropped);
     out
+}
+
+/// Adds a line with a list, unless it is empty.
+fn list<S: Borrow<str>>(out: &mut String, title: &str, list: &[S]) {
+    if !list.is_empty() {
+        let _ = writeln!(out, "{title}: {}", list.join(", "));
+    }
+}
+
+fn mib(bytes: u64) -> f64 {
+    bytes as f64 / f64::from(1 << 20)
 }
 
 /// Stage, name, shader files and results of each pass that runs. The passes of a stage that clear
@@ -180,93 +159,39 @@ fn shared(plan: &Plan) -> (u64, u64) {
 /// Every step in order with its barriers; sizes, formats and lifetimes of resources; passes left
 /// out, with reasons.
 pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
-    let mut out = String::new();
-    let _ = writeln!(
-        out,
-        "graph {}: {} of {} passes run\n",
-        graph.name,
-        plan.passes().len(),
-        graph.passes.len()
-    );
+    let (ran, all) = (plan.passes().len(), graph.passes.len());
+    let mut out = format!("graph {}: {ran} of {all} passes run\n\norder\n", graph.name);
     let schedule = schedule(plan);
-    let _ = writeln!(out, "order");
     for (i, step) in plan.steps.iter().enumerate() {
         for barrier in &schedule.barriers[0][i] {
             let _ = writeln!(out, "       | {}", barrier_text(graph, barrier));
         }
-        let _ = writeln!(
-            out,
-            "{i:5}  {}{}",
-            graph.pass_name(step.pass),
-            repeat_text(plan, i)
-        );
+        let (name, repeat) = (graph.pass_name(step.pass), repeat_text(plan, i));
+        let _ = writeln!(out, "{i:5}  {name}{repeat}");
         let _ = writeln!(out, "       {}", work_text(graph, step));
         for u in &step.uses {
-            let how = match (u.read, u.write) {
-                (true, true) => "reads and writes",
-                (false, true) if u.overwrite => "replaces",
-                (false, true) => "writes",
-                (false, false) => "asks for the size of",
-                (true, false) => "reads",
-            };
-            let mips = if u.mips.1 == 1 {
-                format!("mip {}", u.mips.0)
-            } else {
-                format!("mips {}-{}", u.mips.0, u.mips.0 + u.mips.1 - 1)
-            };
-            let mips = if matches!(u.res, Res::Texture(..)) {
-                mips
-            } else {
-                String::new()
-            };
-            let _ = writeln!(out, "         {how} {} {mips}", graph.title_of(u.res));
+            let _ = writeln!(out, "         {}", use_text(graph, u));
         }
         for i in &step.stripped {
-            let _ = writeln!(
-                out,
-                "         leaves out its stores to {}",
-                linked[step.pass].bound[*i].name
-            );
+            let name = &linked[step.pass].bound[*i].name;
+            let _ = writeln!(out, "         leaves out its stores to {name}");
         }
     }
-    let _ = writeln!(
-        out,
-        "\nresources                        size                 format       MiB  lifetime (steps)"
-    );
-    let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+    out.push_str("\nresources                        size                 format       MiB  lifetime (steps)\n");
     for res in plan.made() {
-        let (size, format) = match res {
-            Res::Texture(t, _) => {
-                let p = &plan.textures[t];
-                let ([x, y, z], mips) = (p.extent, p.mips);
-                let size = if p.volume {
-                    format!("{x}x{y}x{z}")
-                } else {
-                    format!("{x}x{y}x{} layers", p.layers)
-                };
-                (format!("{size}, {mips} mips"), p.format.name)
-            }
-            Res::Buffer(b, _) => (format!("{} bytes", plan.buffers[b].size), "buffer"),
-        };
-        let (name, mib, lifetime) = (
-            graph.name_of(res),
-            mib(plan.bytes_of(res)),
-            lifetime(plan, res),
-        );
-        let _ = writeln!(
-            out,
-            "{name:<28} {size:>22}  {format:<10} {mib:>7.1}  {lifetime}"
-        );
+        let (size, format) = size_text(plan, res);
+        let (name, mib) = (graph.name_of(res), mib(plan.bytes_of(res)));
+        let _ = write!(out, "{name:<28} {size:>22}  {format:<10} {mib:>7.1}");
+        let _ = writeln!(out, "  {}", lifetime(plan, res));
     }
     let total: u64 = plan.made().map(|res| plan.bytes_of(res)).sum();
     let saved = shared(plan).1;
-    let _ = writeln!(
-        out,
-        "{:<62} {:>10.1}",
-        "saved by memory that transient ones share",
-        mib(saved)
-    );
-    let _ = writeln!(out, "{:<62} {:>10.1}", "total", mib(total - saved));
+    for (title, bytes) in [
+        ("saved by memory that transient ones share", saved),
+        ("total", total - saved),
+    ] {
+        let _ = writeln!(out, "{title:<62} {:>10.1}", mib(bytes));
+    }
     let _ = writeln!(out, "\nleft out");
     for (pass, why) in &plan.dropped {
         let _ = writeln!(out, "  pass {}: {why}", graph.pass_name(*pass));
@@ -276,6 +201,38 @@ pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
         let _ = writeln!(out, "  {name}: no pass that runs uses it");
     }
     out
+}
+
+fn use_text(graph: &Graph, u: &Use) -> String {
+    let how = match (u.read, u.write) {
+        (true, true) => "reads and writes",
+        (false, true) if u.overwrite => "replaces",
+        (false, true) => "writes",
+        (false, false) => "asks for the size of",
+        (true, false) => "reads",
+    };
+    let mips = match (u.res, u.mips) {
+        (Res::Buffer(..), _) => String::new(),
+        (_, (mip, 1)) => format!("mip {mip}"),
+        (_, (first, count)) => format!("mips {first}-{}", first + count - 1),
+    };
+    format!("{how} {} {mips}", graph.title_of(u.res))
+}
+
+/// Size and format.
+fn size_text(plan: &Plan, res: Res) -> (String, &str) {
+    match res {
+        Res::Texture(t, _) => {
+            let p = &plan.textures[t];
+            let ([x, y, z], mips) = (p.extent, p.mips);
+            let size = match p.volume {
+                true => format!("{x}x{y}x{z}"),
+                false => format!("{x}x{y}x{} layers", p.layers),
+            };
+            (format!("{size}, {mips} mips"), p.format.name)
+        }
+        Res::Buffer(b, _) => (format!("{} bytes", plan.buffers[b].size), "buffer"),
+    }
 }
 
 fn repeat_text(plan: &Plan, i: usize) -> String {

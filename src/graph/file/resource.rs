@@ -140,6 +140,24 @@ pub struct Bind {
     pub sampler: Option<SamplerDecl>,
 }
 
+impl NamedSampler {
+    /// The texture with this sampler.
+    pub fn bind(self) -> Bind {
+        Bind {
+            of: self.of,
+            mip: None,
+            format: None,
+            history: false,
+            sampler: Some(SamplerDecl {
+                filter: self.filter,
+                mip_filter: self.mip_filter,
+                address: self.address,
+                compare: self.compare,
+            }),
+        }
+    }
+}
+
 impl Bind {
     /// With the additions of a pass.
     pub fn narrowed(&self, by: &Bind) -> Bind {

@@ -27,25 +27,16 @@ pub(super) fn resolve(
     if let Some(i) = graph.interface.index(resource_name) {
         let (fits, expected) = match graph.interface.resources[i].kind {
             ExternalKind::Uniform => (*resource == Resource::Uniform, "a uniform block"),
-            ExternalKind::Storage => (
-                matches!(resource, Resource::Buffer { write: false, .. }),
-                "a read-only buffer",
-            ),
-            ExternalKind::TextureArray => {
-                let array = Resource::Sampled {
-                    shape: Shape::D2Array,
-                    compare: false,
-                    integer: false,
-                };
-                (*resource == array, "a sampler2DArray")
+            ExternalKind::Storage => {
+                let reads = matches!(resource, Resource::Buffer { write: false, .. });
+                (reads, "a read-only buffer")
             }
+            ExternalKind::TextureArray => (is_plain_array(resource), "a sampler2DArray"),
         };
+        let message = || format!("'{name}' is {expected} of the scene, and {}", declares());
         return match fits {
             true => Ok(Target::External(i)),
-            false => Err((
-                format!("'{name}' is {expected} of the scene, and {}", declares()),
-                None,
-            )),
+            false => Err((message(), None)),
         };
     }
     if let Some(i) = graph.buffer(resource_name) {
@@ -54,39 +45,41 @@ pub(super) fn resolve(
                 Err(read_only(resource_name))
             }
             Resource::Buffer { .. } | Resource::Uniform => Ok(Target::Buffer(i)),
-            _ => Err((
-                format!(
-                    "'{resource_name}' is a buffer of the graph, and {}",
-                    declares()
-                ),
-                None,
-            )),
+            _ => {
+                let what = "is a buffer of the graph";
+                Err((
+                    format!("'{resource_name}' {what}, and {}", declares()),
+                    None,
+                ))
+            }
         };
     }
     if let Some(i) = graph.texture(resource_name) {
-        let misfit = misfit(
-            graph,
-            resource_name,
-            &graph.textures[i].1.value,
-            bind,
-            resource,
-        );
+        let texture = &graph.textures[i].1.value;
+        let misfit = misfit(graph, resource_name, texture, bind, resource);
         return misfit.map_or(Ok(Target::Texture(i)), Err);
     }
+    let aliases = graph.aliases.iter().map(|a| a.name.as_str());
     let known = graph
         .resource_names()
-        .chain(graph.aliases.iter().map(|a| a.name.as_str()));
-    let known = known
+        .chain(aliases)
         .chain(graph.interface.resources.iter().map(|e| e.name))
         .chain(pass.bind.0.iter().map(|b| b.0.value.as_str()));
     let help = nearest(name, known).unwrap_or_else(|| {
         format!("declare it in the graph, or rename it: bind: {{\"{name}\": (of: \"...\")}}")
     });
-    let message = format!(
-        "'{name}' is {} that neither the graph nor the scene declares",
-        describe(resource)
-    );
+    let what = describe(resource);
+    let message = format!("'{name}' is {what} that neither the graph nor the scene declares");
     Err((message, Some(help)))
+}
+
+fn is_plain_array(resource: &Resource) -> bool {
+    *resource
+        == Resource::Sampled {
+            shape: Shape::D2Array,
+            compare: false,
+            integer: false,
+        }
 }
 
 fn read_only(name: &str) -> Misfit {
@@ -147,21 +140,12 @@ fn misfit(
         let message = format!("'{name}' is {}, and {}", wanted.name(), declares());
         return wrong(message, &format!("declare it as {}", wanted.name()));
     }
-    let view = bind
-        .and_then(|d| d.format.as_ref())
-        .unwrap_or(&texture.format)
-        .value
-        .as_str();
-    let formats: Vec<Format> = match Format::named(view) {
-        Some(f) => vec![f],
-        None => {
-            let options = graph
-                .params
-                .param(view)
-                .map_or(&[][..], |p| p.kind.options());
-            options.iter().filter_map(|o| Format::named(o)).collect()
-        }
-    };
+    let view = bind.and_then(|d| d.format.as_ref());
+    let view = view.unwrap_or(&texture.format).value.as_str();
+    let param = graph.params.param(view);
+    let options = param.map_or(&[][..], |p| p.kind.options());
+    let options = options.iter().filter_map(|o| Format::named(o));
+    let formats = Format::named(view).map_or_else(|| options.collect(), |f| vec![f]);
     match resource {
         Resource::Storage {
             format,
@@ -169,76 +153,68 @@ fn misfit(
             write,
             ..
         } => {
-            if formats.iter().any(|f| f.is_depth()) {
-                return Some((
-                    format!("'{name}' is a depth texture, which cannot be a storage image"),
-                    None,
-                ));
-            }
-            if formats.iter().any(|f| f.name.ends_with("_srgb")) {
-                return Some((
-                    format!("'{name}' is sRGB-encoded, which a storage image cannot be"),
-                    None,
-                ));
-            }
-            if *write && bind.is_some_and(|d| d.history) {
-                return Some(read_only(name));
-            }
-            match format {
-                Some(declared) if formats.iter().any(|f| f.name != *declared) => {
-                    let message =
-                        format!("'{name}' has format {view}, and the shader declares {declared}");
-                    match formats.len() {
-                        1 => wrong(
-                            message,
-                            &format!("write layout({view}), or bind it as another declared view"),
-                        ),
-                        _ => wrong(
-                            message,
-                            "its format is a choice: write to a `writeonly` image without a format, and read by sampler",
-                        ),
-                    }
-                }
-                None if *read => wrong(
-                    format!("'{name}' is read as an image without a format"),
-                    &format!("write layout({view}), or mark it writeonly"),
-                ),
-                _ => None,
-            }
+            let to_history = *write && bind.is_some_and(|d| d.history);
+            storage_misfit((name, view), &formats, *format, *read, to_history)
         }
         Resource::Sampled {
             compare, integer, ..
         } => {
-            let wants = formats
-                .iter()
-                .any(|f| matches!(f.channels, Channels::Uint | Channels::Int));
-            if wants != *integer {
-                let better = if wants {
-                    "declare a usampler"
-                } else {
-                    "declare a sampler"
-                };
-                return wrong(
-                    format!("'{name}' has format {view}, and {}", declares()),
-                    better,
-                );
-            }
+            let is_integer = |f: &Format| matches!(f.channels, Channels::Uint | Channels::Int);
+            let wants = formats.iter().any(is_integer);
             let sampler = bind.and_then(|d| d.sampler).or(texture.sampler);
             let compares = sampler.is_some_and(|s| s.compare.is_some());
-            if compares == *compare {
-                return None;
-            }
-            let help = match compare {
-                true => "bind it with sampler: (compare: less_or_equal)",
-                false => {
-                    "declare a Shadow sampler, or bind it with a sampler that does not compare"
+            let format = format!("'{name}' has format {view}, and {}", declares());
+            let unfit = format!("the sampler of '{name}' does not fit: {}", declares());
+            match (wants, compares) {
+                (true, _) if !integer => wrong(format, "declare a usampler"),
+                (false, _) if *integer => wrong(format, "declare a sampler"),
+                (_, false) if *compare => {
+                    wrong(unfit, "bind it with sampler: (compare: less_or_equal)")
                 }
-            };
-            wrong(
-                format!("the sampler of '{name}' does not fit: {}", declares()),
-                help,
-            )
+                (_, true) if !compare => wrong(
+                    unfit,
+                    "declare a Shadow sampler, or bind it with a sampler that does not compare",
+                ),
+                _ => None,
+            }
         }
         _ => None,
     }
+}
+
+/// Why a texture does not fit an image. `format` is declared by the shader; `view` is the name of
+/// the texture's format or of a parameter that chooses it.
+fn storage_misfit(
+    (name, view): (&str, &str),
+    formats: &[Format],
+    format: Option<&str>,
+    read: bool,
+    to_history: bool,
+) -> Option<Misfit> {
+    if formats.iter().any(|f| f.is_depth()) {
+        let why = "is a depth texture, which cannot be a storage image";
+        return Some((format!("'{name}' {why}"), None));
+    }
+    if formats.iter().any(|f| f.name.ends_with("_srgb")) {
+        let why = "is sRGB-encoded, which a storage image cannot be";
+        return Some((format!("'{name}' {why}"), None));
+    }
+    if to_history {
+        return Some(read_only(name));
+    }
+    let (why, help) = match format {
+        Some(declared) if formats.iter().any(|f| f.name != declared) => (
+            format!("has format {view}, and the shader declares {declared}"),
+            match formats.len() {
+                1 => format!("write layout({view}), or bind it as another declared view"),
+                _ => "its format is a choice: write to a `writeonly` image without a format, and read by sampler".into(),
+            },
+        ),
+        None if read => (
+            "is read as an image without a format".into(),
+            format!("write layout({view}), or mark it writeonly"),
+        ),
+        _ => return None,
+    };
+    Some((format!("'{name}' {why}"), Some(help)))
 }

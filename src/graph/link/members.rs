@@ -109,6 +109,26 @@ pub fn table(layouts: &Layouts<'_>, number: usize) -> Option<Table> {
         .flatten()
 }
 
+/// Adds the declarations of a buffer that differ from its first one.
+fn differences(
+    declared: &[Declared<'_>],
+    place: &impl Fn(&Declared<'_>, String) -> Diagnostic,
+    found: &mut Vec<Diagnostic>,
+) {
+    let Some((first, others)) = declared.split_first() else {
+        return;
+    };
+    for other in others.iter().filter(|o| o.layout != first.layout) {
+        let there = place(first, String::new()).place;
+        let there = format!("{}:{}", there.file.display(), there.line);
+        let message = format!("'{}' is declared otherwise than in {there}", other.name);
+        let wrong = place(other, message).help(difference(first.layout, other.layout));
+        if !found.contains(&wrong) {
+            found.push(wrong);
+        }
+    }
+}
+
 /// Mistakes in the names of members, from the compiled shaders. With `all` shaders, an undeclared
 /// buffer is a mistake too. `place` is the place of a declaration in a shader.
 pub(super) fn mistakes(
@@ -132,61 +152,34 @@ pub(super) fn mistakes(
         found.extend(resolve(&table.value, layouts).err().into_iter().flatten());
         named.push(&table.value.list);
     }
-    let mut buffers: BTreeSet<&str> = named
-        .iter()
-        .map(|path| path.value.buffer.as_str())
-        .collect();
+    let mut buffers = BTreeSet::new();
+    buffers.extend(named.iter().map(|path| path.value.buffer.as_str()));
     for (name, buffer) in &graph.buffers {
-        if let BufferSize::Struct(count) = &buffer.value.size.value {
-            buffers.insert(name);
-            found.extend(
-                layouts
-                    .struct_size(name, count.is_some())
-                    .err()
-                    .map(|message| {
-                        let help = count
-                            .is_none()
-                            .then(|| String::from("say how many: Struct(of: \"...\")"));
-                        graph
-                            .sources
-                            .error(buffer.value.size.at, message)
-                            .help(help)
-                    }),
-            );
-            if all && layouts.of(name).is_none() {
-                let message = format!("no shader declares '{name}', so its struct has no size");
-                found.push(graph.sources.error(buffer.value.size.at, message));
-            }
-        }
-    }
-    for path in named
-        .iter()
-        .filter(|path| all && layouts.of(&path.value.buffer).is_none())
-    {
-        let message = format!(
-            "no shader declares '{}', so its members have no place",
-            path.value.buffer
-        );
-        found.push(graph.sources.error(path.at, message));
-    }
-    for (_, declared) in graph
-        .buffers
-        .iter()
-        .zip(&layouts.declared)
-        .filter(|(b, _)| buffers.contains(b.0.as_str()))
-    {
-        let Some((first, others)) = declared.split_first() else {
+        let size = &buffer.value.size;
+        let BufferSize::Struct(count) = &size.value else {
             continue;
         };
-        for other in others.iter().filter(|o| o.layout != first.layout) {
-            let there = place(first, String::new()).place;
-            let there = format!("{}:{}", there.file.display(), there.line);
-            let message = format!("'{}' is declared otherwise than in {there}", other.name);
-            let wrong = place(other, message).help(difference(first.layout, other.layout));
-            if !found.contains(&wrong) {
-                found.push(wrong);
-            }
+        buffers.insert(name);
+        if let Err(message) = layouts.struct_size(name, count.is_some()) {
+            let how = || String::from("say how many: Struct(of: \"...\")");
+            let help = count.is_none().then(how);
+            found.push(graph.sources.error(size.at, message).help(help));
         }
+        if all && layouts.of(name).is_none() {
+            let message = format!("no shader declares '{name}', so its struct has no size");
+            found.push(graph.sources.error(size.at, message));
+        }
+    }
+    for path in &named {
+        let name = &path.value.buffer;
+        if all && layouts.of(name).is_none() {
+            let message = format!("no shader declares '{name}', so its members have no place");
+            found.push(graph.sources.error(path.at, message));
+        }
+    }
+    let declared = graph.buffers.iter().zip(&layouts.declared);
+    for (_, declared) in declared.filter(|(b, _)| buffers.contains(b.0.as_str())) {
+        differences(declared, &place, &mut found);
     }
     found
 }

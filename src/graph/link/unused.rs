@@ -13,24 +13,7 @@ pub(super) type Texts = Arc<BTreeMap<String, String>>;
 /// One warning for each resource that is not among those used, and for each parameter and value
 /// that neither the graph nor the shaders' texts name.
 pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -> Vec<Diagnostic> {
-    let mut wanted: HashSet<&str> = graph.outputs.iter().map(String::as_str).collect();
-    wanted.extend(graph.output.as_deref());
-    wanted.extend(graph.hdr.as_deref());
-    wanted.extend(graph.parts.iter().map(|p| p.texture.as_str()));
-    wanted.extend(
-        graph
-            .checks
-            .iter()
-            .map(|c| c.value.field.value.buffer.as_str()),
-    );
-    wanted.extend(
-        graph
-            .tables
-            .iter()
-            .map(|t| t.value.list.value.buffer.as_str()),
-    );
-    let of_tools = graph.tools.iter().flat_map(|t| &t.1.value.resources.0);
-    wanted.extend(of_tools.map(|(_, name)| name.value.as_str()));
+    let wanted = wanted(graph);
     let mut findings = Vec::new();
     let mut warn = |at: At, message: String| {
         let d = graph.sources.error(at, message);
@@ -41,17 +24,10 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
     };
     // A file is the same in all shaders that include it.
     let texts: HashMap<&String, &String> = shaders.iter().flat_map(|t| t.iter()).collect();
-    let words = Words::of(
-        texts
-            .iter()
-            .filter(|(file, _)| file.as_str() != "params.glsl")
-            .map(|(_, text)| text.as_str()),
-    );
-    let resources = graph
-        .textures
-        .iter()
-        .map(|t| (&t.0, t.1.at))
-        .chain(graph.buffers.iter().map(|b| (&b.0, b.1.at)));
+    let written = texts.iter().filter(|t| t.0.as_str() != "params.glsl");
+    let words = Words::of(written.map(|(_, text)| text.as_str()));
+    let textures = graph.textures.iter().map(|t| (&t.0, t.1.at));
+    let resources = textures.chain(graph.buffers.iter().map(|b| (&b.0, b.1.at)));
     // One option of a module may read what another does not.
     let aliases = graph
         .aliases
@@ -78,19 +54,33 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
                 .iter()
                 .any(|t| t.contains_key(&module_include(&param.name)));
         if !in_graph && !as_format && !included && !words.has(&param.in_shaders()) {
+            let name = &param.name;
             warn(
                 param.at,
-                format!("parameter '{}' is declared and never used", param.name),
+                format!("parameter '{name}' is declared and never used"),
             );
         }
     }
     for value in &graph.values {
         if !variables.contains(&value.name) && !words.has(&format!("params.{}", value.name)) {
+            let name = &value.name;
             warn(
                 value.at,
-                format!("value '{}' is declared and never used", value.name),
+                format!("value '{name}' is declared and never used"),
             );
         }
     }
     findings
+}
+
+/// Resources that are results, or that checks, tables and tools read.
+fn wanted(graph: &Graph) -> HashSet<&str> {
+    let outputs = graph.outputs.iter().chain(&graph.output).chain(&graph.hdr);
+    let parts = graph.parts.iter().map(|p| &p.texture);
+    let checks = graph.checks.iter().map(|c| &c.value.field.value.buffer);
+    let tables = graph.tables.iter().map(|t| &t.value.list.value.buffer);
+    let of_tools = graph.tools.iter().flat_map(|t| &t.1.value.resources.0);
+    let of_tools = of_tools.map(|(_, name)| &name.value);
+    let names = outputs.chain(parts).chain(checks).chain(tables);
+    names.chain(of_tools).map(String::as_str).collect()
 }

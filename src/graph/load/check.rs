@@ -3,13 +3,21 @@
 use super::findings::Findings;
 use super::include::Folders;
 use super::params::is_identifier;
-use crate::diagnostics::{At, Entries, Loc, RawText, nearest};
+use crate::diagnostics::{At, Entries, Items, Loc, RawText, nearest};
 use crate::graph::definition::Graph;
 use crate::graph::expr::Ex;
 use crate::graph::file::{CheckDecl, CompareDecl, Path, TableDecl, ToolDecl};
 use crate::graph::param::Kind;
 use crate::vulkan::Format;
 use std::collections::HashSet;
+
+/// Names in a file of a graph with their places, for messages.
+pub(super) struct Names {
+    pub pinned: Entries<String>,
+    pub modules: Entries<String>,
+    pub fit: Entries<Items<RawText>>,
+    pub pointer: Option<Loc<String>>,
+}
 
 /// The checks of a graph that was read, and the mistakes that they find.
 pub(super) struct Check<'g> {
@@ -39,6 +47,50 @@ impl<'g> Check<'g> {
             found,
             variables,
         }
+    }
+
+    /// Checks everything. `results` are names of textures.
+    pub(super) fn all(&mut self, names: &Names, results: &[Loc<String>]) {
+        let graph = self.graph;
+        self.names();
+        self.pinned(&names.pinned);
+        let params = graph.params.list.iter();
+        self.exprs(params.flat_map(|p| p.when.iter().chain(&p.effective)));
+        self.modules(&names.modules);
+        self.named_values();
+        self.textures();
+        self.aliases();
+        for pass in &graph.passes {
+            self.pass(&pass.value, pass.at);
+        }
+        for name in results {
+            self.texture_name(name);
+        }
+        for compare in &graph.compare {
+            self.side(&compare.value.a);
+            self.side(&compare.value.b);
+        }
+        for (name, list) in &names.fit.0 {
+            list.value.0.iter().for_each(|v| self.setting(name, v));
+        }
+        for view in graph.views.iter().chain(&graph.ablation) {
+            self.settings(&view.value.set);
+        }
+        for (_, tool) in &graph.tools {
+            self.tool(&tool.value);
+        }
+        for item in &graph.checks {
+            self.check(&item.value);
+        }
+        self.exprs(graph.refuse.iter().map(|r| &r.when));
+        if let Some(name) = &names.pointer {
+            self.pointer(name);
+        }
+        if let Some(caption) = &graph.caption {
+            self.caption(caption);
+        }
+        self.tables(&graph.tables);
+        self.exprs(graph.scene_expressions());
     }
 
     /// Names and values of parameters.

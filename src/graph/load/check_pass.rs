@@ -15,24 +15,16 @@ impl Check<'_> {
             pass.draw.is_some(),
             pass.clear.is_some(),
         ];
-        match kinds.iter().filter(|k| **k).count() {
-            0 => self.error(
-                at,
-                format!("pass '{name}' does nothing: give it dispatch, draw or clear"),
-            ),
-            1 => {}
-            _ => self.error(
-                at,
-                format!(
-                    "pass '{name}' does several things: dispatch, draw and clear exclude each other"
-                ),
-            ),
+        let mistake = match kinds.iter().filter(|k| **k).count() {
+            0 => Some("nothing: give it dispatch, draw or clear"),
+            1 => None,
+            _ => Some("several things: dispatch, draw and clear exclude each other"),
+        };
+        if let Some(what) = mistake {
+            self.error(at, format!("pass '{name}' does {what}"));
         }
-        self.exprs(
-            pass.conditions()
-                .chain(pass.over_frames())
-                .chain(&pass.repeat),
-        );
+        let frames = pass.conditions().chain(pass.over_frames());
+        self.exprs(frames.chain(&pass.repeat));
         if pass.repeat.is_some() && pass.each_mip.is_some() {
             self.error(at, format!("pass '{name}' has both repeat and each_mip"));
         }
@@ -51,12 +43,12 @@ impl Check<'_> {
             self.indirect(command);
         }
         for (_, bind) in &pass.bind.0 {
-            match self.graph.alias(&bind.value.of.value) {
-                Some(alias) => alias
-                    .cases
-                    .iter()
-                    .for_each(|case| self.bind(&case.bind.narrowed(&bind.value))),
-                None => self.bind(&bind.value),
+            let Some(alias) = self.graph.alias(&bind.value.of.value) else {
+                self.bind(&bind.value);
+                continue;
+            };
+            for case in &alias.cases {
+                self.bind(&case.bind.narrowed(&bind.value));
             }
         }
         for (written, read) in &pass.instead.0 {
@@ -97,78 +89,53 @@ impl Check<'_> {
         let name = &pass.name.value;
         let mut stages = Vec::new();
         for shader in &pass.shaders.0 {
-            let Some(stage) = Stage::of_file(&shader.value) else {
-                self.error(
-                    shader.at,
-                    format!(
-                        "'{}' is no shader: expected .vert, .tesc, .tese, .geom, .frag or .comp",
-                        shader.value
-                    ),
-                );
-                continue;
-            };
-            if stages.contains(&stage) {
-                self.error(
-                    shader.at,
-                    format!("pass '{name}' has two {stage:?} shaders"),
-                );
-            }
-            stages.push(stage);
-            if !is_inside(&shader.value) {
-                self.error(
-                    shader.at,
-                    format!(
-                        "shader '{}' leads out of the folder of shaders",
-                        shader.value
-                    ),
-                );
-                continue;
-            }
-            let path = self.folders.shaders.join(&shader.value);
-            // The compiler's own words for this are pages of built-in functions.
-            if read_input_text(&path, MAX_BYTES).is_ok_and(|text| !text.contains("#version")) {
-                self.error(
-                    shader.at,
-                    format!(
-                        "shader '{}' has no line `#version 460`, which must be its first",
-                        shader.value
-                    ),
-                );
-            }
-            if !path.is_file() {
-                let known = files_of(&self.folders.shaders);
-                let help = nearest(&shader.value, known.iter().map(String::as_str));
-                self.found.help(
-                    shader.at,
-                    format!("no shader file '{}'", shader.value),
-                    help,
-                );
-            }
+            self.shader(name, shader, &mut stages);
         }
+        let has = |stage| stages.contains(&stage);
+        let (is_drawn, takes_patches) = (pass.draw.is_some(), pass.topology == Topology::Patches);
+        let tessellates = has(Stage::TessControl) && has(Stage::TessEvaluation);
         if pass.dispatch.is_some() && stages != [Stage::Compute] {
-            self.error(
-                at,
-                format!("pass '{name}' dispatches: it needs one .comp shader and no other"),
-            );
+            let what = "dispatches: it needs one .comp shader and no other";
+            self.error(at, format!("pass '{name}' {what}"));
         }
-        if pass.draw.is_some()
-            && (!stages.contains(&Stage::Vertex) || stages.contains(&Stage::Compute))
-        {
-            self.error(
-                at,
-                format!("pass '{name}' draws: it needs a .vert shader and no .comp"),
-            );
+        if is_drawn && (!has(Stage::Vertex) || has(Stage::Compute)) {
+            let what = "draws: it needs a .vert shader and no .comp";
+            self.error(at, format!("pass '{name}' {what}"));
         }
-        let tessellated =
-            stages.contains(&Stage::TessControl) && stages.contains(&Stage::TessEvaluation);
-        if pass.draw.is_some() && (pass.topology == Topology::Patches) != tessellated {
-            self.error(
-                at,
-                format!("pass '{name}': patches need both a .tesc and a .tese shader, and they need patches"),
-            );
+        if is_drawn && takes_patches != tessellates {
+            let what = "patches need both a .tesc and a .tese shader, and they need patches";
+            self.error(at, format!("pass '{name}': {what}"));
         }
         if pass.clear.is_some() && !pass.shaders.0.is_empty() {
             self.error(at, format!("pass '{name}' clears: it takes no shaders"));
+        }
+    }
+
+    fn shader(&mut self, pass: &str, shader: &Loc<String>, stages: &mut Vec<Stage>) {
+        let (at, file) = (shader.at, &shader.value);
+        let Some(stage) = Stage::of_file(file) else {
+            let kinds = ".vert, .tesc, .tese, .geom, .frag or .comp";
+            return self.error(at, format!("'{file}' is no shader: expected {kinds}"));
+        };
+        if stages.contains(&stage) {
+            self.error(at, format!("pass '{pass}' has two {stage:?} shaders"));
+        }
+        stages.push(stage);
+        if !is_inside(file) {
+            let what = "leads out of the folder of shaders";
+            return self.error(at, format!("shader '{file}' {what}"));
+        }
+        let path = self.folders.shaders.join(file);
+        // The compiler's own words for this are pages of built-in functions.
+        if read_input_text(&path, MAX_BYTES).is_ok_and(|text| !text.contains("#version")) {
+            let what = "has no line `#version 460`, which must be its first";
+            self.error(at, format!("shader '{file}' {what}"));
+        }
+        if !path.is_file() {
+            let known = files_of(&self.folders.shaders);
+            let help = nearest(file, known.iter().map(String::as_str));
+            self.found
+                .help(at, format!("no shader file '{file}'"), help);
         }
     }
 
@@ -229,67 +196,45 @@ impl Check<'_> {
     fn attachments(&mut self, pass: &PassDecl, at: At) {
         let name = &pass.name.value;
         for target in &pass.color.0 {
-            let t = &target.value;
-            self.exprs(t.mip.iter().chain(&t.layer));
-            if self.texture_name(&t.to) && self.is_depth(&t.to.value) == Some(true) {
-                self.error(
-                    t.to.at,
-                    format!(
-                        "'{}' is a depth texture and cannot be a colour attachment",
-                        t.to.value
-                    ),
-                );
+            let (to, at) = (&target.value.to.value, target.value.to.at);
+            self.exprs(target.value.mip.iter().chain(&target.value.layer));
+            if self.texture_name(&target.value.to) && self.is_depth(to) == Some(true) {
+                let what = "is a depth texture and cannot be a colour attachment";
+                self.error(at, format!("'{to}' {what}"));
             }
-            if self.is_volume(&t.to.value) {
-                self.error(
-                    t.to.at,
-                    format!(
-                        "'{}' is 3D and cannot be an attachment; write to it as an image",
-                        t.to.value
-                    ),
-                );
+            if self.is_volume(to) {
+                let what = "is 3D and cannot be an attachment; write to it as an image";
+                self.error(at, format!("'{to}' {what}"));
             }
         }
         if let Some(depth) = &pass.depth {
-            let t = &depth.value;
-            self.exprs(t.layer.iter());
-            if self.texture_name(&t.to) && self.is_depth(&t.to.value) == Some(false) {
-                self.error(
-                    t.to.at,
-                    format!("'{}' is no depth texture (d32 or d16)", t.to.value),
-                );
+            let to = &depth.value.to;
+            self.exprs(depth.value.layer.iter());
+            if self.texture_name(to) && self.is_depth(&to.value) == Some(false) {
+                let message = format!("'{}' is no depth texture (d32 or d16)", to.value);
+                self.error(to.at, message);
             }
         }
         let any = !pass.color.0.is_empty() || pass.depth.is_some();
         if any && pass.draw.is_none() {
-            self.error(
-                at,
-                format!("pass '{name}' has attachments but draws nothing"),
-            );
+            let what = "has attachments but draws nothing";
+            self.error(at, format!("pass '{name}' {what}"));
         }
         let raster = &pass.raster;
         if let Some(size) = &raster.size {
             self.exprs([&size.value.0, &size.value.1]);
             if any {
-                self.error(
-                    size.at,
-                    format!("pass '{name}' has attachments: its size is theirs"),
-                );
+                let what = "has attachments: its size is theirs";
+                self.error(size.at, format!("pass '{name}' {what}"));
             }
         } else if pass.draw.is_some() && !any && !raster.discard {
-            self.error(
-                at,
-                format!(
-                    "pass '{name}' draws without attachments: give raster: (size: (\"w\", \"h\"))"
-                ),
-            );
+            let what = "draws without attachments: give raster: (size: (\"w\", \"h\"))";
+            self.error(at, format!("pass '{name}' {what}"));
         }
         self.exprs(raster.samples.iter());
         if raster.samples.is_some() && any {
-            self.error(
-                at,
-                format!("pass '{name}': samples are for drawing without attachments"),
-            );
+            let what = "samples are for drawing without attachments";
+            self.error(at, format!("pass '{name}': {what}"));
         }
     }
 }

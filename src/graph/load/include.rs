@@ -68,25 +68,7 @@ impl<'f> Include<'f> {
             return;
         }
         if in_circle {
-            let name = |p: &Path| {
-                p.file_name()
-                    .unwrap_or_default()
-                    .to_string_lossy()
-                    .into_owned()
-            };
-            let circle: Vec<String> = self
-                .stack
-                .iter()
-                .skip_while(|p| *p != path)
-                .map(|p| name(p))
-                .collect();
-            let message = format!(
-                "'{}' includes itself: {} > {}",
-                path.display(),
-                circle.join(" > "),
-                name(path)
-            );
-            return self.error(from, message);
+            return self.error(from, self.circle(path));
         }
         if self.stack.len() >= MAX_DEPTH || self.found.sources.paths().count() >= MAX_FILES {
             let names: Vec<String> = self.stack.iter().map(|p| p.display().to_string()).collect();
@@ -99,27 +81,7 @@ impl<'f> Include<'f> {
         }
         let file = match self.found.sources.read(path) {
             Ok(file) => file,
-            Err(e) => {
-                let known = if path.exists() {
-                    Vec::new()
-                } else {
-                    ron_files(&self.folders.passes)
-                };
-                let name = path
-                    .file_name()
-                    .map_or(String::new(), |n| n.to_string_lossy().into_owned());
-                let found = from.map_or(e.clone(), |at| self.found.sources.error(at, e.message));
-                let instead = self
-                    .retired
-                    .iter()
-                    .find(|(graph, _)| *graph == name && !path.exists());
-                self.found.errors.push(match instead {
-                    Some((_, instead)) => found.help(Some(instead.clone())),
-                    None => found.nearest(&name, known.iter().map(String::as_str)),
-                });
-                self.found.partial = true;
-                return;
-            }
+            Err(e) => return self.unreadable(path, from, e),
         };
         let Findings {
             sources,
@@ -134,23 +96,49 @@ impl<'f> Include<'f> {
         self.stack.push(path.to_path_buf());
         for name in &parsed.include.0 {
             // A capture's graph comes from strangers: it may not quote files from elsewhere.
-            match Path::new(&name.value)
-                .components()
-                .all(|c| matches!(c, Component::Normal(_)))
-            {
-                true => self.file(&self.folders.passes.join(&name.value), Some(name.at)),
-                false => {
-                    let message = format!(
-                        "the include '{}' leads out of the folder of graphs",
-                        name.value
-                    );
-                    self.found.partial = true;
-                    self.error(Some(name.at), message);
-                }
+            let mut components = Path::new(&name.value).components();
+            if components.all(|c| matches!(c, Component::Normal(_))) {
+                self.file(&self.folders.passes.join(&name.value), Some(name.at));
+                continue;
             }
+            let file = &name.value;
+            let message = format!("the include '{file}' leads out of the folder of graphs");
+            self.found.partial = true;
+            self.error(Some(name.at), message);
         }
         self.stack.pop();
         self.files.push(parsed);
+    }
+
+    fn circle(&self, path: &Path) -> String {
+        let mut circle: Vec<String> = self.stack.iter().map(|p| file_name(p)).collect();
+        let start = self.stack.iter().position(|p| p == path);
+        circle.drain(..start.unwrap_or(0));
+        let circle = circle.join(" > ");
+        format!(
+            "'{}' includes itself: {circle} > {}",
+            path.display(),
+            file_name(path)
+        )
+    }
+
+    /// Reports a file that cannot be read, with what to include instead.
+    fn unreadable(&mut self, path: &Path, from: Option<At>, error: Diagnostic) {
+        let name = file_name(path);
+        let is_missing = !path.exists();
+        let known = match is_missing {
+            true => ron_files(&self.folders.passes),
+            false => Vec::new(),
+        };
+        let message = error.message.clone();
+        let found = from.map_or(error, |at| self.found.sources.error(at, message));
+        let mut retired = self.retired.iter();
+        let instead = retired.find(|(graph, _)| *graph == name && is_missing);
+        self.found.errors.push(match instead {
+            Some((_, instead)) => found.help(Some(instead.clone())),
+            None => found.nearest(&name, known.iter().map(String::as_str)),
+        });
+        self.found.partial = true;
     }
 
     fn error(&mut self, from: Option<At>, message: String) {
@@ -162,6 +150,11 @@ impl<'f> Include<'f> {
                 .push(Diagnostic::error(Place::default(), message)),
         }
     }
+}
+
+fn file_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default();
+    name.to_string_lossy().into_owned()
 }
 
 fn ron_files(folder: &Path) -> Vec<String> {

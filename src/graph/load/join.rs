@@ -3,9 +3,7 @@
 use super::findings::Findings;
 use crate::diagnostics::{Entries, Items, Loc, RawText};
 use crate::graph::definition::{Alias, AliasCase};
-use crate::graph::file::{
-    AliasDecl, Bind, GraphFile, NamedSampler, PassDecl, SamplerDecl, Size, TextureDecl,
-};
+use crate::graph::file::{AliasDecl, Bind, GraphFile, NamedSampler, PassDecl, Size, TextureDecl};
 
 /// Adds a file's sections to those of the files before it.
 pub(super) fn add(all: &mut GraphFile, file: GraphFile) {
@@ -137,6 +135,34 @@ pub(super) fn sizes_of_others(textures: &mut [(String, Loc<TextureDecl>)], found
     }
 }
 
+fn case(decl: AliasDecl) -> AliasCase {
+    AliasCase {
+        when: decl.when,
+        bind: Bind {
+            of: decl.of,
+            mip: decl.mip,
+            format: decl.format,
+            history: decl.history,
+            sampler: decl.sampler,
+        },
+    }
+}
+
+/// Every case except the last one has a condition.
+fn check_cases(name: &str, list: &Loc<Vec<Loc<AliasDecl>>>, found: &mut Findings) {
+    let Some((last, others)) = list.value.split_last() else {
+        return found.error(list.at, format!("alias '{name}' stands for nothing"));
+    };
+    for case in others.iter().filter(|case| case.value.when.is_none()) {
+        let message = format!("a case of '{name}' without `when` hides those behind it");
+        found.error(case.at, message);
+    }
+    if let Some(when) = &last.value.when {
+        let message = format!("the last case of '{name}' has a condition: what if none holds?");
+        found.error(when.at, message);
+    }
+}
+
 /// Adds the aliases and samplers of a file. They replace earlier ones of the same names.
 pub(super) fn add_aliases(
     known: &mut Vec<Alias>,
@@ -146,86 +172,20 @@ pub(super) fn add_aliases(
 ) {
     let mut new: Vec<Alias> = Vec::new();
     for (name, list) in aliases.0 {
-        let last = list.value.len().saturating_sub(1);
-        if list.value.is_empty() {
-            found.error(
-                list.at,
-                format!("alias '{}' stands for nothing", name.value),
-            );
-        }
-        for (i, case) in list.value.iter().enumerate() {
-            match (&case.value.when, i == last) {
-                (Some(when), true) => {
-                    let message = format!(
-                        "the last case of '{}' has a condition: what if none holds?",
-                        name.value
-                    );
-                    found.error(when.at, message);
-                }
-                (None, false) => {
-                    let message = format!(
-                        "a case of '{}' without `when` hides those behind it",
-                        name.value
-                    );
-                    found.error(case.at, message);
-                }
-                _ => {}
-            }
-        }
-        let cases = list.value.into_iter().map(|case| {
-            let AliasDecl {
-                when,
-                of,
-                mip,
-                format,
-                history,
-                sampler,
-            } = case.value;
-            AliasCase {
-                when,
-                bind: Bind {
-                    of,
-                    mip,
-                    format,
-                    history,
-                    sampler,
-                },
-            }
-        });
+        check_cases(&name.value, &list, found);
         new.push(Alias {
             name: name.value,
             at: name.at,
-            cases: cases.collect(),
+            cases: list.value.into_iter().map(|c| case(c.value)).collect(),
         });
     }
     for (name, sampler) in samplers.0 {
         if new.iter().any(|a| a.name == name.value) {
-            found.error(
-                name.at,
-                format!("'{}' is an alias and a sampler", name.value),
-            );
+            let message = format!("'{}' is an alias and a sampler", name.value);
+            found.error(name.at, message);
             continue;
         }
-        let NamedSampler {
-            of,
-            filter,
-            mip_filter,
-            address,
-            compare,
-        } = sampler.value;
-        let sampler = Some(SamplerDecl {
-            filter,
-            mip_filter,
-            address,
-            compare,
-        });
-        let bind = Bind {
-            of,
-            mip: None,
-            format: None,
-            history: false,
-            sampler,
-        };
+        let bind = sampler.value.bind();
         new.push(Alias {
             name: name.value,
             at: name.at,

@@ -11,13 +11,14 @@ mod values;
 
 pub use include::Folders;
 
-use super::definition::{Graph, LightPart};
-use super::file::{GraphFile, PartItem, ungrouped};
+use super::definition::{Alias, Graph, LightPart};
+use super::file::{GraphFile, PartItem, PassDecl, Retired, ungrouped};
 use super::interface::SceneInterface;
 use super::param::Params;
 use crate::diagnostics::{Diagnostic, Entries, Items, Loc, RawText, Severity, Sources};
-use check::Check;
+use check::{Check, Names};
 use findings::Findings;
+use std::mem::take;
 use std::path::Path;
 
 /// Reads `path` and its includes, for scenes with this interface.
@@ -33,57 +34,30 @@ pub fn load(
     let retired = include.retired();
     include.file(path, None);
     let (files, mut found) = (include.files, include.found);
-    let mut file = GraphFile::default();
-    let (mut aliases, mut passes) = (Vec::new(), Vec::new());
-    // Textures that are results of some file.
-    let mut results = Vec::new();
-    for mut more in files {
-        join::add_aliases(
-            &mut aliases,
-            std::mem::take(&mut more.aliases),
-            std::mem::take(&mut more.samplers),
-            &mut found,
-        );
-        for pass in ungrouped(std::mem::take(&mut more.passes)) {
-            join::insert_pass(&mut passes, pass, &mut found);
-        }
-        let parts = more.parts.0.iter().map(|(_, part)| &part.value.0.texture);
-        results.extend(
-            more.output
-                .iter()
-                .chain(&more.hdr)
-                .chain(&more.outputs.0)
-                .chain(parts)
-                .cloned(),
-        );
-        join::add(&mut file, more);
-    }
+    let joined = joined(files, &mut found);
+    let mut file = joined.file;
     join::leave_out_fixed(&mut file);
-    let mut textures = by_name(file.textures);
+    let mut textures = by_name(take(&mut file.textures));
     join::sizes_of_others(&mut textures, &mut found);
-    let mut list = params::declared(&file.params.0, interface, &mut found);
-    params::set_defaults(&mut list, &file.defaults, &mut found);
-    params::fix(&mut list, &file.fixed, &mut found);
-    let pass_names = passes.iter().map(|p| p.value.name.value.clone()).collect();
-    let retired = [texts(&retired.parameters), texts(&file.retired)].concat();
-    let params = Params {
-        retired,
-        passes: pass_names,
-        ..Params::new(list)
+    let params = parameters(&file, &joined.passes, &retired, interface, &mut found);
+    let names = Names {
+        pinned: file.pinned,
+        modules: file.modules,
+        fit: file.fit,
+        pointer: file.pointer,
     };
-    let mut graph = Graph {
-        name: path
-            .file_stem()
-            .map_or(String::new(), |s| s.to_string_lossy().into_owned()),
+    let stem = path.file_stem().unwrap_or_default();
+    let graph = Graph {
+        name: stem.to_string_lossy().into_owned(),
         interface,
         values: values::ordered(file.values.0, &params, interface, &mut found),
         params,
-        pinned: texts(&file.pinned),
-        modules: texts(&file.modules),
+        pinned: texts(&names.pinned),
+        modules: texts(&names.modules),
         textures,
         buffers: by_name(file.buffers),
-        aliases,
-        passes,
+        aliases: joined.aliases,
+        passes: joined.passes,
         output: file.output.map(|name| name.value),
         hdr: file.hdr.map(|name| name.value),
         outputs: file.outputs.0.into_iter().map(|name| name.value).collect(),
@@ -92,81 +66,76 @@ pub fn load(
         checks: file.checks.0,
         refuse: file.refuse.0.into_iter().map(|r| r.value).collect(),
         caption: file.caption,
-        pointer: file.pointer.as_ref().map(|name| name.value.clone()),
+        pointer: names.pointer.as_ref().map(|name| name.value.clone()),
         tables: file.tables.0,
         compare: file.compare.0,
         views: file.views.0,
-        fit: file
-            .fit
-            .0
-            .iter()
-            .map(|(name, list)| (name.value.clone(), raw(&list.value)))
-            .collect(),
+        fit: names.fit.0.iter().map(fit).collect(),
         ablation: file.ablation.0,
         tools: by_name(file.tools),
         // They are needed for messages until the end.
         sources: Sources::default(),
     };
     let mut check = Check::new(&graph, folders, found);
-    check.names();
-    check.pinned(&file.pinned);
-    check.exprs(
-        graph
-            .params
-            .list
-            .iter()
-            .flat_map(|p| p.when.iter().chain(&p.effective)),
-    );
-    check.modules(&file.modules);
-    check.named_values();
-    check.textures();
-    check.aliases();
-    for pass in &graph.passes {
-        check.pass(&pass.value, pass.at);
+    check.all(&names, &joined.results);
+    let found = check.found;
+    finish(graph, found)
+}
+
+fn parameters(
+    file: &GraphFile,
+    passes: &[Loc<PassDecl>],
+    retired: &Retired,
+    interface: &SceneInterface,
+    found: &mut Findings,
+) -> Params {
+    let mut list = params::declared(&file.params.0, interface, found);
+    params::set_defaults(&mut list, &file.defaults, found);
+    params::fix(&mut list, &file.fixed, found);
+    Params {
+        retired: [texts(&retired.parameters), texts(&file.retired)].concat(),
+        passes: passes.iter().map(|p| p.value.name.value.clone()).collect(),
+        ..Params::new(list)
     }
-    for name in &results {
-        check.texture_name(name);
+}
+
+/// The graph with its sources, or its mistakes.
+fn finish(mut graph: Graph, found: Findings) -> Result<Graph, Vec<Diagnostic>> {
+    graph.sources = found.sources;
+    let mut errors = found.errors;
+    if !errors.iter().any(|e| e.severity == Severity::Error) {
+        return Ok(graph);
     }
-    for compare in &graph.compare {
-        check.side(&compare.value.a);
-        check.side(&compare.value.b);
+    errors.sort_by(|a, b| a.place.cmp(&b.place));
+    errors.dedup();
+    Err(errors)
+}
+
+/// The files of a graph as one.
+#[derive(Default)]
+struct Joined {
+    file: GraphFile,
+    aliases: Vec<Alias>,
+    passes: Vec<Loc<PassDecl>>,
+    /// Textures that are results of some file.
+    results: Vec<Loc<String>>,
+}
+
+fn joined(files: Vec<GraphFile>, found: &mut Findings) -> Joined {
+    let mut all = Joined::default();
+    for mut more in files {
+        let (aliases, samplers) = (take(&mut more.aliases), take(&mut more.samplers));
+        join::add_aliases(&mut all.aliases, aliases, samplers, found);
+        for pass in ungrouped(take(&mut more.passes)) {
+            join::insert_pass(&mut all.passes, pass, found);
+        }
+        let parts = more.parts.0.iter().map(|(_, part)| &part.value.0.texture);
+        let results = more.output.iter().chain(&more.hdr);
+        let results = results.chain(&more.outputs.0).chain(parts);
+        all.results.extend(results.cloned());
+        join::add(&mut all.file, more);
     }
-    for (name, list) in &file.fit.0 {
-        list.value
-            .0
-            .iter()
-            .for_each(|value| check.setting(name, value));
-    }
-    for view in graph.views.iter().chain(&graph.ablation) {
-        check.settings(&view.value.set);
-    }
-    for (_, tool) in &graph.tools {
-        check.tool(&tool.value);
-    }
-    for item in &graph.checks {
-        check.check(&item.value);
-    }
-    check.exprs(graph.refuse.iter().map(|r| &r.when));
-    if let Some(name) = &file.pointer {
-        check.pointer(name);
-    }
-    if let Some(caption) = &graph.caption {
-        check.caption(caption);
-    }
-    check.tables(&graph.tables);
-    check.exprs(graph.scene_expressions());
-    let Findings {
-        sources,
-        mut errors,
-        ..
-    } = check.found;
-    graph.sources = sources;
-    if errors.iter().any(|e| e.severity == Severity::Error) {
-        errors.sort_by(|a, b| a.place.cmp(&b.place));
-        errors.dedup();
-        return Err(errors);
-    }
-    Ok(graph)
+    all
 }
 
 impl Graph {
@@ -185,8 +154,9 @@ fn texts(list: &Entries<String>) -> Vec<(String, String)> {
         .collect()
 }
 
-fn raw(list: &Items<RawText>) -> Vec<String> {
-    list.0.iter().map(|text| text.value.0.clone()).collect()
+fn fit((name, list): &(Loc<String>, Loc<Items<RawText>>)) -> (String, Vec<String>) {
+    let values = list.value.0.iter().map(|text| text.value.0.clone());
+    (name.value.clone(), values.collect())
 }
 
 /// Items by name, each with the place of its name.

@@ -53,15 +53,11 @@ pub(super) fn ordered(
             // All that is left reads something that is left: each is in a circle or needs one.
             for value in &later {
                 if let Some(names) = circle(value, &later) {
-                    let way = if names.len() > 2 {
-                        format!(": {}", names.join(" needs "))
-                    } else {
-                        String::new()
-                    };
-                    found.error(
-                        value.expr.at,
-                        format!("value '{}' needs itself{way}", value.name),
-                    );
+                    let mut message = format!("value '{}' needs itself", value.name);
+                    if names.len() > 2 {
+                        message += &format!(": {}", names.join(" needs "));
+                    }
+                    found.error(value.expr.at, message);
                 }
                 found.broken.push(value.name.clone());
             }

@@ -5,7 +5,7 @@ use super::numbers::Numbers;
 use super::steps::Planner;
 use super::uses::{Use, UseKind, merge};
 use super::{converge, layout, live, needs, settle, sizes, transient};
-use crate::diagnostics::{Diagnostic, Place};
+use crate::diagnostics::{At, Diagnostic, Place};
 use crate::graph::definition::Res;
 use crate::graph::evaluated::Evaluated;
 use crate::graph::expr::Var;
@@ -29,21 +29,12 @@ pub fn plan(
     let graph = set.graph;
     let layouts = Layouts::new(graph, linked);
     let mut numbers = Numbers::new(set);
-    for refused in &graph.refuse {
-        if numbers.holds(&refused.when) {
-            numbers.error(refused.when.at, refused.message.clone());
-        }
-    }
+    refuse(&mut numbers);
     let mut textures = sizes::textures(&mut numbers, wanted, device);
     if !numbers.errors.is_empty() {
         return Err(numbers.errors);
     }
     let mut buffers = sizes::buffers(&mut numbers, &layouts, wanted, device);
-    let (mut steps, mut dropped) = (Vec::new(), Vec::new());
-    let (mut settles, mut converges) = (BTreeMap::new(), BTreeMap::new());
-    // What passes write that are left out.
-    let mut missing: Vec<Res> = Vec::new();
-    let mut instead: Vec<(usize, usize)> = Vec::new();
     let mut planner = Planner {
         numbers,
         layouts,
@@ -51,73 +42,115 @@ pub fn plan(
         textures: &textures,
         buffers: &buffers,
     };
-    for (number, (pass, link)) in graph.passes.iter().zip(linked).enumerate() {
-        if let Some(when) = pass
-            .value
-            .conditions()
-            .find(|when| !planner.numbers.holds(when))
-        {
-            dropped.push((number, format!("{} is false", when.value.text)));
-            continue;
-        }
-        let planned = planner.steps(number, &pass.value, link);
-        if set.params.off.contains(&pass.value.name.value) {
-            let uses = planned.into_iter().flat_map(|s| s.uses);
-            missing.extend(uses.filter(|u| u.write).map(|u| u.res));
-            let texture = |name: &str| graph.texture(name);
-            let pairs = pass.value.instead.0.iter();
-            instead.extend(
-                pairs.filter_map(|(of, read)| {
-                    Some((texture(&of.value)?, texture(&read.value.value)?))
-                }),
-            );
-            dropped.push((number, "it is off".into()));
-            continue;
-        }
-        steps.extend(planned);
-        if let Some(ex) = &pass.value.settles {
-            settles.insert(number, (ex.at, planner.numbers.count(ex, 1, "settles")));
-        }
-        if let Some(ex) = &pass.value.converges {
-            converges.insert(number, (ex.at, planner.numbers.count(ex, 1, "converges")));
-        }
-    }
+    let mut ran = run(&mut planner, linked);
     let mut numbers = planner.numbers;
-    // Backwards: with two filters off, a reader of the second reads the input of the first.
-    for (of, read) in instead.into_iter().rev() {
-        read_instead(&textures, &mut steps, of, read);
-    }
-    for res in &missing {
-        match *res {
-            Res::Texture(t, _) => textures[t].transient = false,
-            Res::Buffer(b, _) => buffers[b].transient = false,
-        }
-        numbers
-            .errors
-            .extend(nobody_writes(set, wanted, &steps, *res));
-    }
+    let mut steps = std::mem::take(&mut ran.steps);
+    leave_out(
+        &ran,
+        wanted,
+        &mut numbers,
+        (&mut textures, &mut buffers),
+        &mut steps,
+    );
     written_anew(&textures, &buffers, &mut steps);
     let max_edge = max_edge(&mut numbers);
     if !numbers.errors.is_empty() {
         return Err(numbers.errors);
     }
-    let (settling, convergence, transients) = (Vec::new(), Convergence::default(), Vec::new());
     let mut plan = Plan {
         textures,
         buffers,
         steps,
-        settling,
-        convergence,
-        transients,
-        missing,
-        dropped,
+        settling: Vec::new(),
+        convergence: Convergence::default(),
+        transients: Vec::new(),
+        missing: ran.missing,
+        dropped: ran.dropped,
         max_edge,
     };
-    let mut errors = Vec::new();
     live::prune(graph, linked, &mut plan, wanted);
+    finish(plan, (set, linked), device, (&ran.settles, &ran.converges))
+}
+
+fn refuse(numbers: &mut Numbers<'_>) {
+    for refused in &numbers.set.graph.refuse {
+        if numbers.holds(&refused.when) {
+            numbers.error(refused.when.at, refused.message.clone());
+        }
+    }
+}
+
+/// A number of frames by pass, with its place.
+type Declared = BTreeMap<usize, (At, u32)>;
+
+/// The passes that run, and those that are left out.
+#[derive(Default)]
+struct Ran {
+    steps: Vec<Step>,
+    dropped: Vec<(usize, String)>,
+    settles: Declared,
+    converges: Declared,
+    /// Results of passes that are off.
+    missing: Vec<Res>,
+    /// A texture that a pass which is off writes, and the one that is read instead.
+    instead: Vec<(usize, usize)>,
+}
+
+fn run(planner: &mut Planner<'_, '_>, linked: &[Linked]) -> Ran {
+    let mut ran = Ran::default();
+    let graph = planner.numbers.set.graph;
+    for (number, (pass, link)) in graph.passes.iter().zip(linked).enumerate() {
+        let mut conditions = pass.value.conditions();
+        if let Some(when) = conditions.find(|when| !planner.numbers.holds(when)) {
+            ran.dropped
+                .push((number, format!("{} is false", when.value.text)));
+            continue;
+        }
+        let planned = planner.steps(number, &pass.value, link);
+        if planner
+            .numbers
+            .set
+            .params
+            .off
+            .contains(&pass.value.name.value)
+        {
+            let uses = planned.into_iter().flat_map(|s| s.uses);
+            ran.missing.extend(uses.filter(|u| u.write).map(|u| u.res));
+            let texture = |name: &str| graph.texture(name);
+            let pairs = pass.value.instead.0.iter();
+            ran.instead.extend(
+                pairs.filter_map(|(of, read)| {
+                    Some((texture(&of.value)?, texture(&read.value.value)?))
+                }),
+            );
+            ran.dropped.push((number, "it is off".into()));
+            continue;
+        }
+        ran.steps.extend(planned);
+        if let Some(ex) = &pass.value.settles {
+            ran.settles
+                .insert(number, (ex.at, planner.numbers.count(ex, 1, "settles")));
+        }
+        if let Some(ex) = &pass.value.converges {
+            ran.converges
+                .insert(number, (ex.at, planner.numbers.count(ex, 1, "converges")));
+        }
+    }
+    ran
+}
+
+/// Adds layouts, convergence and memory to the plan.
+fn finish(
+    mut plan: Plan,
+    (set, linked): (&Evaluated<'_>, &[Linked]),
+    device: &DeviceInfo,
+    (settles, converges): (&Declared, &Declared),
+) -> Result<Plan, Vec<Diagnostic>> {
+    let graph = set.graph;
+    let mut errors = Vec::new();
     layout::layouts(graph, &mut plan, &mut errors);
-    plan.convergence = converge::frames(&plan, &settles, &converges);
-    match settle::find(graph, &plan, &settles) {
+    plan.convergence = converge::frames(&plan, settles, converges);
+    match settle::find(graph, &plan, settles) {
         Ok(settling) => plan.settling = settling,
         Err(found) => errors.extend(found),
     }
@@ -130,6 +163,28 @@ pub fn plan(
         Ok(plan)
     } else {
         Err(errors)
+    }
+}
+
+/// Replaces or empties what passes that are off write.
+fn leave_out(
+    ran: &Ran,
+    wanted: &[String],
+    numbers: &mut Numbers<'_>,
+    (textures, buffers): (&mut [TexturePlan], &mut [BufferPlan]),
+    steps: &mut [Step],
+) {
+    // Backwards: with two filters off, a reader of the second reads the input of the first.
+    for (of, read) in ran.instead.iter().rev() {
+        read_instead(textures, steps, *of, *read);
+    }
+    for res in &ran.missing {
+        match *res {
+            Res::Texture(t, _) => textures[t].transient = false,
+            Res::Buffer(b, _) => buffers[b].transient = false,
+        }
+        let error = nobody_writes(numbers.set, wanted, steps, *res);
+        numbers.errors.extend(error);
     }
 }
 

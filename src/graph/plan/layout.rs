@@ -12,13 +12,8 @@ use crate::vulkan::vk::{self, ImageLayout as Layout};
 /// layouts of 3D images between dispatches buys nothing on the devices known to us.
 pub fn layouts(graph: &Graph, plan: &mut Plan, errors: &mut Vec<Diagnostic>) {
     let mut stored = vec![false; plan.textures.len()];
-    for u in plan
-        .steps
-        .iter()
-        .flat_map(|s| &s.uses)
-        .filter(|u| u.kind == UseKind::Storage)
-    {
-        if let Res::Texture(t, _) = u.res {
+    for u in plan.steps.iter().flat_map(|s| &s.uses) {
+        if let (UseKind::Storage, Res::Texture(t, _)) = (u.kind, u.res) {
             stored[t] = true;
         }
     }

@@ -4,7 +4,7 @@ use super::data::Plan;
 use crate::diagnostics::Diagnostic;
 use crate::graph::evaluated::Evaluated;
 use crate::graph::file::PassDecl;
-use crate::graph::link::Linked;
+use crate::graph::link::{Bound, Linked};
 use crate::graph::param::{Params, Value};
 use crate::shader::Resource;
 use crate::vulkan::{DeviceInfo, Stage};
@@ -21,83 +21,79 @@ pub(super) fn check(
     plan: &Plan,
     device: &DeviceInfo,
 ) -> Vec<Diagnostic> {
-    let have = &device.features;
     let mut errors = Vec::new();
     for number in plan.passes() {
         let pass = &set.graph.passes[number].value;
         let link = &linked[number];
-        let has = |stage: Stage| link.stages.iter().any(|s| s.stage == stage);
-        let stores = |fragment: bool| {
-            link.bound.iter().any(|b| {
-                b.stage != Stage::Compute
-                    && (b.stage == Stage::Fragment) == fragment
-                    && matches!(
-                        b.resource,
-                        Resource::Buffer { write: true, .. }
-                            | Resource::Storage { write: true, .. }
-                    )
-            })
-        };
-        let unformatted = link
-            .bound
-            .iter()
-            .any(|b| matches!(b.resource, Resource::Storage { format: None, .. }));
-        let uses = |capability: u32| {
-            link.stages
-                .iter()
-                .any(|s| s.interface.capabilities.contains(&capability))
-        };
-        let needs = [
-            (
-                pass.raster.conservative.is_some(),
-                have.conservative_rasterization,
-                "conservative rasterisation (VK_EXT_conservative_rasterization)",
-            ),
-            (has(Stage::Geometry), have.geometry, "geometry shaders"),
-            (has(Stage::TessControl), have.tessellation, "tessellation"),
-            (
-                stores(true),
-                have.fragment_stores,
-                "stores from fragment shaders",
-            ),
-            (
-                stores(false),
-                have.vertex_stores,
-                "stores from vertex, tessellation or geometry shaders",
-            ),
-            (pass.raster.depth_clamp, have.depth_clamp, "depth clamping"),
-            (
-                unformatted,
-                have.write_without_format,
-                "writing images without a format",
-            ),
-            (uses(CLIP_DISTANCE), have.clip_distance, "gl_ClipDistance"),
-            (
-                uses(INT64) || uses(INT64_ATOMICS),
-                have.int64_atomics,
-                "64-bit atomics in buffers",
-            ),
-            // Not asked of any device: portable shaders do without.
-            (uses(FLOAT64), false, "64-bit floating point in shaders"),
-        ];
-        for (needed, available, what) in needs {
+        for (needed, available, what) in needs(pass, link, device) {
             if needed && !available {
+                let (name, device) = (&pass.name, &device.name);
+                let because = because(pass, set.params);
                 let message = format!(
-                    "pass '{}' needs {what}, which {} does not have{}",
-                    pass.name.value,
-                    device.name,
-                    because(pass, set.params)
+                    "pass '{}' needs {what}, which {device} does not have{because}",
+                    name.value
                 );
-                errors.push(
-                    set.graph
-                        .sources
-                        .error(pass.name.at, message)
-                        .help(instead(pass, set.params)),
-                );
+                let error = set.graph.sources.error(name.at, message);
+                errors.push(error.help(instead(pass, set.params)));
             }
         }
     }
     errors
+}
+
+/// Features: whether the pass needs it, whether the device has it, and its name.
+fn needs(pass: &PassDecl, link: &Linked, device: &DeviceInfo) -> [(bool, bool, &'static str); 10] {
+    let have = &device.features;
+    let has = |stage: Stage| link.stages.iter().any(|s| s.stage == stage);
+    let stores = |fragment: bool| {
+        link.bound.iter().any(|b| {
+            b.stage != Stage::Compute
+                && (b.stage == Stage::Fragment) == fragment
+                && matches!(
+                    b.resource,
+                    Resource::Buffer { write: true, .. } | Resource::Storage { write: true, .. }
+                )
+        })
+    };
+    let is_unformatted = |b: &Bound| matches!(b.resource, Resource::Storage { format: None, .. });
+    let unformatted = link.bound.iter().any(is_unformatted);
+    let uses = |capability: u32| {
+        let mut stages = link.stages.iter();
+        stages.any(|s| s.interface.capabilities.contains(&capability))
+    };
+    [
+        (
+            pass.raster.conservative.is_some(),
+            have.conservative_rasterization,
+            "conservative rasterisation (VK_EXT_conservative_rasterization)",
+        ),
+        (has(Stage::Geometry), have.geometry, "geometry shaders"),
+        (has(Stage::TessControl), have.tessellation, "tessellation"),
+        (
+            stores(true),
+            have.fragment_stores,
+            "stores from fragment shaders",
+        ),
+        (
+            stores(false),
+            have.vertex_stores,
+            "stores from vertex, tessellation or geometry shaders",
+        ),
+        (pass.raster.depth_clamp, have.depth_clamp, "depth clamping"),
+        (
+            unformatted,
+            have.write_without_format,
+            "writing images without a format",
+        ),
+        (uses(CLIP_DISTANCE), have.clip_distance, "gl_ClipDistance"),
+        (
+            uses(INT64) || uses(INT64_ATOMICS),
+            have.int64_atomics,
+            "64-bit atomics in buffers",
+        ),
+        // Not asked of any device: portable shaders do without.
+        (uses(FLOAT64), false, "64-bit floating point in shaders"),
+    ]
 }
 
 fn choices<'p>(

@@ -2,6 +2,7 @@
 
 use super::data::{BufferPlan, TexturePlan};
 use super::numbers::Numbers;
+use crate::graph::expr::Ex;
 use crate::graph::file::BufferSize;
 use crate::graph::link::Layouts;
 use crate::graph::param::{Params, Value};
@@ -28,20 +29,14 @@ pub(super) fn textures(
         for (slot, ex) in extent.iter_mut().zip(&t.size.0) {
             *slot = numbers.count(ex, 1, "size");
         }
-        let mips = t
-            .mips
-            .as_ref()
-            .map_or(1, |ex| numbers.count(ex, 1, "mip count"));
-        let layers = t
-            .layers
-            .as_ref()
-            .map_or(1, |ex| numbers.count(ex, 1, "layer count"));
+        let mut count =
+            |ex: &Option<Ex>, what| ex.as_ref().map_or(1, |ex| numbers.count(ex, 1, what));
+        let mips = count(&t.mips, "mip count");
+        let layers = count(&t.layers, "layer count");
         let most = 32 - extent.iter().max().unwrap_or(&1).leading_zeros();
         if mips > most {
-            numbers.error(
-                texture.at,
-                format!("'{name}' has {mips} mips; {extent:?} texels allow {most}"),
-            );
+            let message = format!("'{name}' has {mips} mips; {extent:?} texels allow {most}");
+            numbers.error(texture.at, message);
         }
         let side = if t.is_volume() {
             limits.max_image_dimension3_d

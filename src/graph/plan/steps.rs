@@ -152,13 +152,9 @@ impl<'a> Planner<'a, '_> {
                 let at = decl.map_or(self.graph().textures[t].1.at, |d| d.of.at);
                 if mips.0 + mips.1 > all {
                     let name = &self.graph().textures[t].0;
-                    return self.numbers.error(
-                        at,
-                        format!(
-                            "'{name}' has {all} mips, counted from 0, and no mip {}",
-                            mips.0
-                        ),
-                    );
+                    let (what, mip) = ("mips, counted from 0, and no mip", mips.0);
+                    let message = format!("'{name}' has {all} {what} {mip}");
+                    return self.numbers.error(at, message);
                 }
                 let history = decl.is_some_and(|d| d.history);
                 let view = decl.and_then(|d| d.format.as_ref());
@@ -167,14 +163,9 @@ impl<'a> Planner<'a, '_> {
                     Resource::Storage { read, write, .. } => (UseKind::Storage, read, write),
                     _ => (UseKind::Sampled, true, false),
                 };
-                step.uses.push(Use::shader(
-                    Res::Texture(t, history),
-                    mips,
-                    kind,
-                    stage,
-                    read,
-                    write,
-                ));
+                let res = Res::Texture(t, history);
+                step.uses
+                    .push(Use::shader(res, mips, kind, stage, read, write));
                 step.bindings.push(BindingPlan {
                     bound: i,
                     texture: t,
@@ -195,14 +186,8 @@ impl<'a> Planner<'a, '_> {
                 .as_ref()
                 .map_or(0, |ex| self.numbers.count(ex, 0, "mip"));
             let clear = t.clear.map(|c| [c.0, c.1, c.2, c.3]);
-            let plan = self.attachment(
-                &t.to,
-                (mip, t.layer.as_ref()),
-                clear,
-                UseKind::Color,
-                &mut step.uses,
-                &mut size,
-            );
+            let (place, uses) = ((mip, t.layer.as_ref()), &mut step.uses);
+            let plan = self.attachment(&t.to, place, clear, UseKind::Color, uses, &mut size);
             step.color.extend(plan.map(Some));
         }
         if let Some(t) = pass.depth.as_ref().map(|target| &target.value) {
@@ -212,14 +197,8 @@ impl<'a> Planner<'a, '_> {
             } else {
                 UseKind::DepthRead
             };
-            step.depth = self.attachment(
-                &t.to,
-                (0, t.layer.as_ref()),
-                clear,
-                kind,
-                &mut step.uses,
-                &mut size,
-            );
+            let (place, uses) = ((0, t.layer.as_ref()), &mut step.uses);
+            step.depth = self.attachment(&t.to, place, clear, kind, uses, &mut size);
         }
         step.viewport = size.unwrap_or([1, 1]);
         if let Some(extent) = &pass.raster.size {
@@ -231,40 +210,36 @@ impl<'a> Planner<'a, '_> {
             let most = limits.max_viewport_dimensions[0].min(limits.max_framebuffer_width);
             if step.viewport.iter().any(|v| *v > most) {
                 let [w, h] = step.viewport;
-                self.numbers.error(
-                    extent.at,
-                    format!(
-                        "viewport {w}x{h} is larger than the {most} that {} allows",
-                        self.device.name
-                    ),
-                );
+                let name = &self.device.name;
+                let message =
+                    format!("viewport {w}x{h} is larger than the {most} that {name} allows");
+                self.numbers.error(extent.at, message);
             }
         }
-        if let Some(samples) = &pass.raster.samples {
-            step.samples = self.numbers.count(samples, 1, "samples");
-            let have = self
-                .device
-                .limits
-                .framebuffer_no_attachments_sample_counts
-                .as_raw();
-            if !step.samples.is_power_of_two() || have & step.samples == 0 {
-                let known: Vec<String> = (0..7)
-                    .map(|b| 1u32 << b)
-                    .filter(|n| have & n != 0)
-                    .map(|n| n.to_string())
-                    .collect();
-                let message = format!(
-                    "{} has no rasterisation with {} samples; it has {}",
-                    self.device.name,
-                    step.samples,
-                    known.join(", ")
-                );
-                self.numbers.error(samples.at, message);
-            }
-        }
+        self.samples(pass, step);
     }
 
     /// An attachment, of the same size as those before.
+    fn samples(&mut self, pass: &PassDecl, step: &mut Step) {
+        let Some(samples) = &pass.raster.samples else {
+            return;
+        };
+        step.samples = self.numbers.count(samples, 1, "samples");
+        let limits = &self.device.limits;
+        let have = limits.framebuffer_no_attachments_sample_counts.as_raw();
+        if !step.samples.is_power_of_two() || have & step.samples == 0 {
+            let known = (0..7).map(|b| 1u32 << b).filter(|n| have & n != 0);
+            let known: Vec<String> = known.map(|n| n.to_string()).collect();
+            let message = format!(
+                "{} has no rasterisation with {} samples; it has {}",
+                self.device.name,
+                step.samples,
+                known.join(", ")
+            );
+            self.numbers.error(samples.at, message);
+        }
+    }
+
     fn attachment(
         &mut self,
         to: &Loc<String>,

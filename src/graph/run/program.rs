@@ -71,6 +71,32 @@ struct Slot {
     handed: Option<Arc<Buffer>>,
 }
 
+fn params_buffer(gpu: &Arc<Gpu>, set: &Evaluated<'_>) -> Result<Arc<Buffer>> {
+    let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+    let size = set.params.uniform_bytes(&set.values).len() as u64;
+    Buffer::new(gpu, "params", size, usage, MemoryLocation::GpuOnly).map(Arc::new)
+}
+
+/// The first step of each run of steps of one pass.
+fn starts(plan: &Plan) -> Vec<usize> {
+    let is_start = |i: &usize| *i == 0 || plan.steps[*i].pass != plan.steps[i - 1].pass;
+    (0..plan.steps.len()).filter(is_start).collect()
+}
+
+impl Slot {
+    fn new(gpu: &Arc<Gpu>, timestamps: usize) -> Result<Slot> {
+        let timestamps = u32::try_from(timestamps).unwrap_or(u32::MAX);
+        Ok(Slot {
+            commands: FrameSlot::new(gpu, timestamps)?,
+            recorded: [None, None],
+            cpu_ms: 0.0,
+            stamped: Vec::new(),
+            readback: (None, false),
+            handed: None,
+        })
+    }
+}
+
 /// All that decides which commands a frame has, but its parity.
 #[derive(PartialEq)]
 struct Recorded {
@@ -117,19 +143,10 @@ impl Program {
         let schedule = schedule(&plan);
         let mut change = Change::default();
         let resources = resources::make(gpu, graph, &plan, parts, &mut change)?;
-        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
-        let size = params.uniform_bytes(&set.values).len() as u64;
-        let params_buffer = Arc::new(Buffer::new(
-            gpu,
-            "params",
-            size,
-            usage,
-            MemoryLocation::GpuOnly,
-        )?);
+        let params_buffer = params_buffer(gpu, set)?;
         let constants = [params.constants(), scene.constants.clone()].concat();
         let made = make_pipelines(gpu, graph, linked, &plan, &constants, &parts.pipelines)?;
-        change.built = made.built;
-        change.kept = made.pipelines.len() - made.built;
+        (change.built, change.kept) = (made.built, made.pipelines.len() - made.built);
         let offered = Offered {
             gpu,
             graph,
@@ -140,40 +157,30 @@ impl Program {
             params: &params_buffer,
         };
         let mut sets = Sets::new(gpu, &plan, linked)?;
-        let pipelines = made
-            .keys
-            .iter()
-            .map(|key| key.map(|k| made.pipelines[k].1.clone()));
-        let steps = plan
-            .steps
-            .iter()
-            .zip(pipelines)
-            .map(|(step, pipeline)| sets.step(&offered, step, pipeline));
+        let pipeline = |key: &Option<usize>| key.map(|k| made.pipelines[k].1.clone());
+        let steps = plan.steps.iter().zip(made.keys.iter().map(pipeline));
+        let steps = steps.map(|(step, pipeline)| sets.step(&offered, step, pipeline));
+        let starts = starts(&plan);
+        let slots = (0..FRAMES_IN_FLIGHT).map(|_| Slot::new(gpu, starts.len() + 1));
         let mut program = Program {
             gpu: gpu.clone(),
             steps: steps.collect::<Result<_>>()?,
             _sets: sets,
-            names: graph
-                .passes
-                .iter()
-                .map(|p| p.value.name.value.clone())
-                .collect(),
+            names: params.passes.clone(),
             pipelines: made.pipelines,
             resting: schedule.ends[1].clone(),
             change,
             shown: None,
             reads_back: true,
             handed: None,
-            starts: (0..plan.steps.len())
-                .filter(|i| *i == 0 || plan.steps[*i].pass != plan.steps[i - 1].pass)
-                .collect(),
             plan,
             linked: linked.clone(),
             schedule,
             scene: scene.clone(),
             resources,
             params: params_buffer,
-            slots: Vec::new(),
+            slots: slots.collect::<Result<_>>()?,
+            starts,
             frame: 0,
             ran: 0,
             interface: set.graph.interface,
@@ -181,17 +188,6 @@ impl Program {
             versions: None,
         };
         program.set_execution(Execution::Full);
-        let timestamps = u32::try_from(program.starts.len() + 1).unwrap_or(u32::MAX);
-        for _ in 0..FRAMES_IN_FLIGHT {
-            program.slots.push(Slot {
-                commands: FrameSlot::new(gpu, timestamps)?,
-                recorded: [None, None],
-                cpu_ms: 0.0,
-                stamped: Vec::new(),
-                readback: (None, false),
-                handed: None,
-            });
-        }
         program.initialise(parts)?;
         Ok(program)
     }

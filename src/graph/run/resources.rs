@@ -169,25 +169,14 @@ pub(super) fn make(
     }
     for ((b, buffer), (name, _)) in plan.buffers.iter().enumerate().zip(&graph.buffers) {
         let stays = may_stay(Res::Buffer(b, false));
-        made.buffers.push(copies(
-            buffer.used && !buffer.transient,
-            buffer.history,
-            |c| {
-                let kept = parts.buffer(name, c, buffer.size).filter(|_| stays);
-                change.resized += usize::from(kept.is_none() && parts.had(name));
-                let new = || {
-                    Buffer::new(
-                        gpu,
-                        name,
-                        buffer.size,
-                        BUFFER_USAGE,
-                        MemoryLocation::GpuOnly,
-                    )
-                    .map(Arc::new)
-                };
-                kept.map_or_else(new, Ok)
-            },
-        )?);
+        let (own, size) = (buffer.used && !buffer.transient, buffer.size);
+        made.buffers.push(copies(own, buffer.history, |c| {
+            let kept = parts.buffer(name, c, size).filter(|_| stays);
+            change.resized += usize::from(kept.is_none() && parts.had(name));
+            let location = MemoryLocation::GpuOnly;
+            let new = || Buffer::new(gpu, name, size, BUFFER_USAGE, location).map(Arc::new);
+            kept.map_or_else(new, Ok)
+        })?);
     }
     let transients = named(graph, plan);
     if !made.take_over(graph, plan, parts, &transients) {
