@@ -84,28 +84,21 @@ fn parameters(args: &AblateArgs) -> Result<(), LabError> {
     let home = Workspace::find()?;
     let graph = home.load_of(&experiment).map_err(LabError::Input)?.graph;
     let changes = changes(&params_of(&graph, &experiment)?, &args.only)?;
-    let scenes = if args.scenes.is_empty() {
-        vec![experiment.scene.clone()]
-    } else {
-        args.scenes.clone()
-    };
-    let folder = args
-        .output
-        .clone()
-        .unwrap_or_else(|| home.root.join("captures/ablations").join(&experiment.name));
+    let mut scenes = args.scenes.clone();
+    if scenes.is_empty() {
+        scenes.push(experiment.scene.clone());
+    }
+    let own = || home.root.join("captures/ablations").join(&experiment.name);
+    let folder = args.output.clone().unwrap_or_else(own);
 
     // Points of one number have one result: repetitions are sweeps of their own.
     let mut folders = vec![folder.clone()];
     folders.extend((2..=args.runs).map(|run| folder.join(format!("unchanged-{run}"))));
     let mut failed = 0;
     for (number, folder) in folders.iter().enumerate() {
-        let settings: Vec<(String, String)> = match number {
-            0 => changes
-                .iter()
-                .map(|c| (c.name.clone(), c.to.to_string()))
-                .collect(),
-            _ => Vec::new(),
-        };
+        let changes = if number == 0 { &changes[..] } else { &[] };
+        let settings = changes.iter().map(|c| (c.name.clone(), c.to.to_string()));
+        let settings: Vec<(String, String)> = settings.collect();
         let sweep =
             Sweep::one_at_a_time(experiment.clone(), &scenes, &settings, frames, args.bounces);
         let options = Options {
@@ -118,28 +111,20 @@ fn parameters(args: &AblateArgs) -> Result<(), LabError> {
         failed += run_with_bar(&home, &args.device, &sweep, &options)?.failed;
     }
 
-    let parts: Vec<String> = std::iter::once("total".into())
-        .chain(focus_of(&graph).map(|p| p.name.clone()))
-        .collect();
+    let mut parts = vec!["total".to_string()];
+    parts.extend(focus_of(&graph).map(|p| p.name.clone()));
     let rows = rows(&folders, &scenes, &changes, &parts)?;
     let table = markdown(&rows);
+    let (name, list, runs) = (&experiment.name, scenes.join(", "), args.runs);
+    let ((width, height), bounces, count) = (experiment.size, args.bounces, frames.count);
     let text = format!(
-        "# {}: each parameter at its plain value\n\nScenes: {}; {} bounces; {}x{}; {} frames; {} runs.\n\n{table}",
-        experiment.name,
-        scenes.join(", "),
-        args.bounces,
-        experiment.size.0,
-        experiment.size.1,
-        frames.count,
-        args.runs
+        "# {name}: each parameter at its plain value\n\nScenes: {list}; {bounces} bounces; {width}x{height}; {count} frames; {runs} runs.\n\n{table}"
     );
-    write_files(
-        &folder,
-        &[
-            ("ablation.md".into(), text.into()),
-            ("ablation.csv".into(), csv(&rows)?.into()),
-        ],
-    )?;
+    let files = [
+        ("ablation.md".into(), text.into()),
+        ("ablation.csv".into(), csv(&rows)?.into()),
+    ];
+    write_files(&folder, &files)?;
     say!("{table}\nwrote {}", super::shown(&folder).display());
     match failed {
         0 => Ok(()),

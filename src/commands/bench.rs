@@ -138,12 +138,10 @@ fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
     let device = DeviceStats::of(&runner.lab.gpu.info);
     let path = record_file(path, &device.name);
     if !path.exists() {
+        let (file, device) = (path.display(), &device.name);
         return Err(LabError::Request(format!(
-            "there is no '{}', so nothing to compare '{}' with: record its times with `conelab bench EXPERIMENT... \
-             --record {}` at a state of the program that is fast enough",
-            path.display(),
-            device.name,
-            path.display()
+            "there is no '{file}', so nothing to compare '{device}' with: record its times with `conelab bench \
+             EXPERIMENT... --record {file}` at a state of the program that is fast enough"
         )));
     }
     let record = Record::read(&path)?;
@@ -156,22 +154,17 @@ fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
         mut broken,
     } = again(&mut runner, chosen, frames);
     let (recorded, points): (Vec<&Recorded>, Vec<SweepPoint>) = found.into_iter().unzip();
-    let names: IndexSet<String> = points
-        .iter()
-        .flat_map(|p| &p.labels)
-        .map(|l| l.0.clone())
-        .collect();
+    let names = points.iter().flat_map(|p| &p.labels);
+    let names: IndexSet<String> = names.map(|l| l.0.clone()).collect();
     let names = names.into_iter().collect();
     let result = bench(&mut runner, names, &points, rounds, frames)?;
     let mut compared: Vec<Compared> = Vec::new();
     for ((recorded, point), now) in recorded.iter().zip(&points).zip(&result.configurations) {
         match &now.times {
-            Some(times) => compared.push(compare(
-                recorded,
-                times,
-                &point.subject.sha256,
-                args.tolerance,
-            )),
+            Some(times) => {
+                let (scene, tolerance) = (&point.subject.sha256, args.tolerance);
+                compared.push(compare(recorded, times, scene, tolerance));
+            }
             None => broken.push((recorded.title(), now.error.clone().unwrap_or_default())),
         }
     }
@@ -193,22 +186,7 @@ fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
         .map_or("against".into(), |s| s.to_string_lossy());
     write(args, &home, &stem, &result)?;
     super::validated(&runner.lab)?;
-    let most = percent(args.tolerance);
-    let mut wrong: Vec<String> = Vec::new();
-    if !broken.is_empty() {
-        wrong.push(format!(
-            "{} configurations cannot be measured again: record them anew",
-            broken.len()
-        ));
-    }
-    wrong.extend(
-        slower(&compared).map(|list| format!("more than {most} slower than recorded: {list}")),
-    );
-    if !wrong.is_empty() {
-        return Err(LabError::Request(wrong.join("\n")));
-    }
-    say!("no stage is more than {most} slower");
-    Ok(())
+    verdict(args.tolerance, broken.len(), &compared)
 }
 
 /// Rounds and frames: those of the command line, else these.
@@ -249,6 +227,24 @@ fn sweep_of(args: &BenchArgs, frames: Frames) -> Result<Sweep, LabError> {
 }
 
 /// The configurations of a record for the experiments of the command line; all without any.
+/// An error if a configuration cannot be measured again or is slower.
+fn verdict(tolerance: f64, broken: usize, compared: &[Compared]) -> Result<(), LabError> {
+    let most = percent(tolerance);
+    let mut wrong: Vec<String> = Vec::new();
+    if broken > 0 {
+        wrong.push(format!(
+            "{broken} configurations cannot be measured again: record them anew"
+        ));
+    }
+    let slower = slower(compared);
+    wrong.extend(slower.map(|list| format!("more than {most} slower than recorded: {list}")));
+    if !wrong.is_empty() {
+        return Err(LabError::Request(wrong.join("\n")));
+    }
+    say!("no stage is more than {most} slower");
+    Ok(())
+}
+
 fn chosen<'r>(
     args: &BenchArgs,
     home: &Workspace,

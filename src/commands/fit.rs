@@ -69,10 +69,7 @@ pub struct FitArgs {
 /// Gains below this part of a time or an error are taken for noise.
 const LEAST_GAIN: f64 = 0.01;
 
-/// Finds the cheapest setting within a bound.
-pub fn run(args: &FitArgs) -> Result<(), LabError> {
-    let experiment = args.experiment.read()?;
-    adapt::check_frames(args.frames, args.warmup, 0.0)?;
+fn goal(args: &FitArgs) -> Result<Goal, LabError> {
     let goal = match (args.max_error, args.max_ms) {
         (Some(bound), _) => Goal::Error(bound),
         (None, Some(bound)) => Goal::Time(bound),
@@ -83,29 +80,32 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
             "the bound and --evaluations must be above 0".into(),
         ));
     }
+    Ok(goal)
+}
+
+fn output(args: &FitArgs, home: &Workspace, name: &str) -> Result<PathBuf, LabError> {
+    match &args.output {
+        Some(path) if path.extension().is_some_and(|e| e == "ron") => Ok(path.clone()),
+        Some(path) => Err(LabError::Request(format!(
+            "'{}': give it a name that ends in .ron",
+            path.display()
+        ))),
+        None => Ok(home.root.join("captures/fit").join(format!("{name}.ron"))),
+    }
+}
+
+/// Finds the cheapest setting within a bound.
+pub fn run(args: &FitArgs) -> Result<(), LabError> {
+    let experiment = args.experiment.read()?;
+    adapt::check_frames(args.frames, args.warmup, 0.0)?;
+    let goal = goal(args)?;
     let home = Workspace::find()?;
-    let output = match &args.output {
-        Some(path) if path.extension().is_some_and(|e| e == "ron") => path.clone(),
-        Some(path) => {
-            return Err(LabError::Request(format!(
-                "'{}': give it a name that ends in .ron",
-                path.display()
-            )));
-        }
-        None => home
-            .root
-            .join("captures/fit")
-            .join(format!("{}.ron", experiment.name)),
-    };
-    let given = args
-        .vary
-        .iter()
-        .map(|text| axis("--vary", text, "NAME=VALUE,VALUE"))
-        .collect::<Result<Vec<_>, _>>()?;
-    let axes = fit::axes(
-        &home.load_of(&experiment).map_err(LabError::Input)?.graph,
-        &given,
-    )?;
+    let output = output(args, &home, &experiment.name)?;
+    let given = args.vary.iter();
+    let given = given.map(|text| axis("--vary", text, "NAME=VALUE,VALUE"));
+    let given = given.collect::<Result<Vec<_>, _>>()?;
+    let graph = home.load_of(&experiment).map_err(LabError::Input)?.graph;
+    let axes = fit::axes(&graph, &given)?;
     let folder = output.with_extension("");
     let request = Request {
         experiment: &experiment,
@@ -125,20 +125,16 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
     };
     let mut bar = bar("settings ");
     let open = || Lab::open(home.clone(), args.device.options());
+    let mut on_progress = |progress| match progress {
+        // Warnings of a setting are in its line.
+        Progress::Finished(what, _) => bar(Progress::Finished(what, Vec::new())),
+        other => bar(other),
+    };
     let Fitted {
         found,
         best,
         defaults,
-    } = fit::run(
-        &open,
-        &super::open_scene,
-        &request,
-        &mut |progress| match progress {
-            // Warnings of a setting are in its line.
-            Progress::Finished(what, _) => bar(Progress::Finished(what, Vec::new())),
-            other => bar(other),
-        },
-    )?;
+    } = fit::run(&open, &super::open_scene, &request, &mut on_progress)?;
     let summary = summary(&found, args, goal, &axes);
     crate::experiment::write(&best, &defaults, &output, true)?;
     comment(&output, &summary, &best, &defaults)?;

@@ -1,14 +1,16 @@
 //! `conelab graph`.
 
+use super::check;
 use crate::campaign::settings::named;
 use crate::diagnostics::nearest;
 use crate::experiment::Experiment;
 use crate::files::path_of;
-use crate::graph::Evaluated;
 use crate::graph::outline::outline;
+use crate::graph::param::Params;
 use crate::graph::plan::plan;
 use crate::graph::report;
-use crate::lab::{LabError, Loaded, Workspace, any_device, environment, params_of};
+use crate::graph::{Evaluated, Graph};
+use crate::lab::{LabError, Workspace, any_device, environment, params_of};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -52,36 +54,25 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
         super::writable(path, &["json"])?;
     }
     let file = super::found(&path_of(&args.file));
-    let experiment = match crate::commands::check::kind(&file) {
-        crate::commands::check::FileKind::Experiment => {
-            Some(Experiment::read(&file).map_err(LabError::Input)?)
-        }
-        _ => None,
-    };
+    let is_experiment = matches!(check::kind(&file), check::FileKind::Experiment);
+    let experiment = is_experiment.then(|| Experiment::read(&file));
+    let experiment = experiment.transpose().map_err(LabError::Input)?;
     let loaded = match &experiment {
         Some(experiment) => home.load_of(experiment),
         None => home.load(&args.file),
     };
-    let Loaded {
-        graph, warnings, ..
-    } = loaded.map_err(LabError::Input)?;
-    for warning in warnings {
+    let loaded = loaded.map_err(LabError::Input)?;
+    for warning in &loaded.warnings {
         warn!("{warning}");
     }
+    let graph = loaded.graph;
     if args.params {
         say_part!("{}", report::params(&graph.params));
         if graph.values.is_empty() {
             return Ok(());
         }
     }
-    let mut params = match &experiment {
-        Some(e) => params_of(&graph, e)?,
-        None => graph.params.clone(),
-    };
-    for setting in &args.set {
-        let (name, value) = named("--set", setting, "NAME=VALUE")?;
-        params.set(name, value).map_err(LabError::Request)?;
-    }
+    let params = params(args, &graph, experiment.as_ref())?;
     let size = match &args.size {
         Some(text) => super::adapt::parse_size(text)?,
         None => experiment.as_ref().map_or((1280, 720), |e| e.size),
@@ -94,37 +85,52 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     let set = Evaluated::new(&graph, &params, environment(&scene, size, &device));
     if args.params {
         say_part!("{}", report::values(&set));
-        return if set.errors.is_empty() {
-            Ok(())
-        } else {
-            Err(LabError::Input(set.errors))
+        return match set.errors.is_empty() {
+            true => Ok(()),
+            false => Err(LabError::Input(set.errors)),
         };
     }
-    let mut wanted: Vec<String> = graph
-        .output
-        .iter()
-        .chain(&graph.hdr)
-        .chain(&args.want)
-        .cloned()
-        .collect();
-    if let Some(name) = wanted.iter().find(|w| graph.resource(w).is_none()) {
-        let hint =
-            nearest(name, graph.resource_names()).map_or(String::new(), |h| format!(" ({h})"));
-        return Err(LabError::Request(format!("no resource '{name}'{hint}")));
-    }
-    wanted.extend(graph.checked_with(&wanted));
+    let wanted = wanted(&graph, &args.want)?;
     let linked = home.linked(&graph, &params).map_err(LabError::Input)?;
     let plan = plan(&set, &linked, &wanted, &device).map_err(LabError::Input)?;
     if let Some(path) = &args.json {
         return super::write_json(path, &outline(&graph, &params, &plan));
     }
-    say_part!(
-        "{}",
-        match (args.dot, args.barriers) {
-            (true, _) => report::dot(&graph, &linked, &plan),
-            (_, true) => report::text(&graph, &linked, &plan),
-            _ => report::summary(&set, &linked, &plan),
-        }
-    );
+    let text = match (args.dot, args.barriers) {
+        (true, _) => report::dot(&graph, &linked, &plan),
+        (_, true) => report::text(&graph, &linked, &plan),
+        _ => report::summary(&set, &linked, &plan),
+    };
+    say_part!("{text}");
     Ok(())
+}
+
+/// The parameters of the experiment with those of the arguments.
+fn params(
+    args: &GraphArgs,
+    graph: &Graph,
+    experiment: Option<&Experiment>,
+) -> Result<Params, LabError> {
+    let mut params = match experiment {
+        Some(e) => params_of(graph, e)?,
+        None => graph.params.clone(),
+    };
+    for setting in &args.set {
+        let (name, value) = named("--set", setting, "NAME=VALUE")?;
+        params.set(name, value).map_err(LabError::Request)?;
+    }
+    Ok(params)
+}
+
+/// The picture, and resources that were asked for.
+fn wanted(graph: &Graph, names: &[String]) -> Result<Vec<String>, LabError> {
+    let results = graph.output.iter().chain(&graph.hdr);
+    let mut wanted: Vec<String> = results.chain(names).cloned().collect();
+    if let Some(name) = wanted.iter().find(|w| graph.resource(w).is_none()) {
+        let hint = nearest(name, graph.resource_names());
+        let hint = hint.map_or(String::new(), |h| format!(" ({h})"));
+        return Err(LabError::Request(format!("no resource '{name}'{hint}")));
+    }
+    wanted.extend(graph.checked_with(&wanted));
+    Ok(wanted)
 }

@@ -3,6 +3,7 @@
 use super::adapt::{self, ExperimentArgs, parse_resource};
 use super::{DeviceArgs, writable};
 use crate::camera_path::CameraPath;
+use crate::experiment::PlacedCamera;
 use crate::graph::param::Value;
 use crate::graph::run::{Execution, FrameTimes};
 use crate::graph::{Graph, LightPart};
@@ -58,9 +59,72 @@ pub struct RenderArgs {
     device: DeviceArgs,
 }
 
+/// A file or folder, and the texture that is written to it, with mip and layer.
+type Shown<'a> = (&'a PathBuf, (String, u32, u32));
+
 /// Renders.
 pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     let experiment = args.experiment.read()?;
+    let exr = check(args)?;
+    let path = args.path.as_deref().map(super::found);
+    let path = path.map(|path| CameraPath::read(&path));
+    let path = path.transpose().map_err(LabError::Input)?;
+    let home = Workspace::find()?;
+    let mut scene = adapt::open_scene(&experiment)?;
+    if let Some(seed) = args.shuffle {
+        scene = scene.shuffled(seed);
+    }
+    let lab = Lab::open(home, args.device.options())?;
+    let resource = args.resource.as_deref().map(parse_resource).transpose()?;
+    let (mut shown, mut frames_of): (Option<Shown>, Option<Shown>) = (None, None);
+    let (mut session, warnings) = lab.prepare(&experiment, Arc::new(scene), |graph| {
+        if let Some(path) = &args.output {
+            shown = Some((path, texture(graph, resource.as_ref(), exr)?));
+        }
+        if let Some(path) = &args.sequence {
+            frames_of = Some((path, texture(graph, resource.as_ref(), false)?));
+        }
+        let all = shown.iter().chain(&frames_of);
+        Ok(all.map(|s| s.1.0.clone()).collect())
+    })?;
+    for warning in warnings {
+        warn!("{warning}");
+    }
+    if shown.is_none() && frames_of.is_none() {
+        return Err(LabError::Request(
+            "nothing to write: name the picture with --output, for example -o picture.png".into(),
+        ));
+    }
+    session.set_execution(args.execution);
+    let warmup = warmup(args, &session);
+    let camera = |number: usize| {
+        let time = experiment.time + number as f64 * args.step;
+        path.as_ref().map(|path| path.at(time))
+    };
+    let times = frames(args, &lab, &mut session, warmup, camera, frames_of.as_ref())?;
+    let failed = failed_checks(&mut session, shown.as_ref())?;
+    if let Some((path, shown)) = &shown {
+        let rows = args.timers.filter(|_| !exr);
+        let timers = rows.map(|rows| timers(rows, &lab, &session, &times));
+        write_texture(&lab, &mut session, path, shown, timers)?;
+    }
+    let (info, name) = (&lab.gpu.info, &experiment.name);
+    let stats = stats::collect(info, name, &session, &times, warmup, failed);
+    say_part!("{}", stats::table(&stats));
+    if let Some((folder, _)) = &frames_of {
+        let frames = args.frames.unwrap_or(1);
+        say!("wrote {frames} frames to {}", folder.display());
+    }
+    print(&session, shown.as_ref(), exr && resource.is_none());
+    if let Some(path) = &args.json {
+        super::write_json(path, &stats)?;
+    }
+    drop(session);
+    super::validated(&lab)
+}
+
+/// Checks arguments before anything is opened; whether the picture is linear.
+fn check(args: &RenderArgs) -> Result<bool, LabError> {
     let (frames, given) = (args.frames.unwrap_or(1), args.warmup.unwrap_or(0));
     adapt::check_frames(frames, given, args.step)?;
     let exr = match &args.output {
@@ -73,129 +137,92 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     if let Some(folder) = &args.sequence {
         without_frames(folder)?;
     }
-    let path = args
-        .path
-        .as_deref()
-        .map(|path| CameraPath::read(&super::found(path)))
-        .transpose()
-        .map_err(LabError::Input)?;
-    let home = Workspace::find()?;
-    let mut scene = adapt::open_scene(&experiment)?;
-    if let Some(seed) = args.shuffle {
-        scene = scene.shuffled(seed);
+    Ok(exr)
+}
+
+/// The texture to write: the one asked for, or the picture.
+fn texture(
+    graph: &Graph,
+    resource: Option<&(String, u32, u32)>,
+    exr: bool,
+) -> Result<(String, u32, u32), LabError> {
+    match resource {
+        Some(r) if graph.texture(&r.0).is_some() => Ok(r.clone()),
+        Some(r) => Err(crate::lab::no_texture(graph, &r.0)),
+        None => Ok((result_name(graph, exr)?, 0, 0)),
     }
-    let lab = Lab::open(home, args.device.options())?;
-    let resource = args.resource.as_deref().map(parse_resource).transpose()?;
-    let (mut shown, mut frames_of) = (None, None);
-    let (mut session, warnings) = lab.prepare(&experiment, Arc::new(scene), |graph| {
-        let named = |exr| match &resource {
-            Some(r) if graph.texture(&r.0).is_some() => Ok(r.clone()),
-            Some(r) => Err(crate::lab::no_texture(graph, &r.0)),
-            None => Ok((result_name(graph, exr)?, 0, 0)),
-        };
-        shown = args
-            .output
-            .as_ref()
-            .map(|path| Ok::<_, LabError>((path, named(exr)?)))
-            .transpose()?;
-        frames_of = args
-            .sequence
-            .as_ref()
-            .map(|path| Ok::<_, LabError>((path, named(false)?)))
-            .transpose()?;
-        Ok(shown
-            .iter()
-            .chain(&frames_of)
-            .map(|s| s.1.0.clone())
-            .collect())
-    })?;
-    for warning in warnings {
-        warn!("{warning}");
-    }
-    if shown.is_none() && frames_of.is_none() {
-        return Err(LabError::Request(
-            "nothing to write: name the picture with --output, for example -o picture.png".into(),
-        ));
-    }
-    session.set_execution(args.execution);
-    let mut times = Vec::new();
+}
+
+fn warmup(args: &RenderArgs, session: &Session) -> usize {
     let alone =
         args.frames.is_none() && args.sequence.is_none() && args.path.is_none() && args.step == 0.0;
-    let warmup = args.warmup.unwrap_or(if alone {
-        session.converging_frames() - 1
+    let converging = if alone {
+        session.converging_frames()
     } else {
-        0
-    });
+        1
+    };
+    args.warmup.unwrap_or(converging - 1)
+}
+
+/// Runs all frames, and returns the times of those after the warm-up.
+fn frames(
+    args: &RenderArgs,
+    lab: &Lab,
+    session: &mut Session,
+    warmup: usize,
+    camera: impl Fn(usize) -> Option<PlacedCamera>,
+    frames_of: Option<&Shown>,
+) -> Result<Vec<FrameTimes>, LabError> {
+    let frames = args.frames.unwrap_or(1);
+    let mut times = Vec::new();
     let bar = indicatif::ProgressBar::new((warmup + frames) as u64);
     for number in 0..warmup + frames {
-        if let Some(path) = &path {
-            session.place_camera(&path.at(experiment.time + number as f64 * args.step));
+        if let Some(camera) = camera(number) {
+            session.place_camera(&camera);
         }
         times.extend(session.frame(args.step)?);
-        if let (Some((folder, shown)), Some(frame)) = (&frames_of, number.checked_sub(warmup)) {
+        if let (Some((folder, shown)), Some(frame)) = (frames_of, number.checked_sub(warmup)) {
             times.extend(session.finish()?);
             let file = folder.join(format!("frame-{frame:05}.png"));
-            let timers = args
-                .timers
-                .zip(times.last())
-                .map(|(rows, times)| timers(rows, &lab, &session, std::slice::from_ref(times)));
-            write_texture(&lab, &mut session, &file, shown, timers)?;
+            let rows = args.timers.zip(times.last());
+            let timers =
+                rows.map(|(rows, times)| timers(rows, lab, session, std::slice::from_ref(times)));
+            write_texture(lab, session, &file, shown, timers)?;
         }
         bar.inc(1);
     }
     times.extend(session.finish()?);
     bar.finish_and_clear();
-    let times: Vec<FrameTimes> = times.split_off(times.len().saturating_sub(frames));
+    Ok(times.split_off(times.len().saturating_sub(frames)))
+}
+
+/// Failed checks, which are printed.
+fn failed_checks(session: &mut Session, shown: Option<&Shown>) -> Result<Vec<String>, LabError> {
     let mut failed = session.failed_checks()?;
-    if let Some((_, shown)) = &shown {
-        failed.extend(not_finite(
-            &session.texels(&shown.0, shown.1, shown.2)?,
-            &shown.0,
-        ));
+    if let Some((_, (name, mip, layer))) = shown {
+        failed.extend(not_finite(&session.texels(name, *mip, *layer)?, name));
     }
     for message in &failed {
         warn!("warning: {message}");
     }
-    if let Some((path, shown)) = &shown {
-        let timers = args
-            .timers
-            .filter(|_| !exr)
-            .map(|rows| timers(rows, &lab, &session, &times));
-        write_texture(&lab, &mut session, path, shown, timers)?;
+    Ok(failed)
+}
+
+/// Names the picture that was written. `linear` is whether it is the linear picture.
+fn print(session: &Session, shown: Option<&Shown>, linear: bool) {
+    let Some((path, (name, ..))) = shown else {
+        return;
+    };
+    if !linear {
+        return say!("wrote {}", path.display());
     }
-    let stats = stats::collect(
-        &lab.gpu.info,
-        &experiment.name,
-        &session,
-        &times,
-        warmup,
-        failed,
-    );
-    say_part!("{}", stats::table(&stats));
-    if let Some((folder, _)) = &frames_of {
-        say!("wrote {} frames to {}", frames, folder.display());
+    say!("wrote {} ('{name}', linear)", path.display());
+    if let Some(part) = part_asked_for(session).filter(|p| p.texture != *name) {
+        warn!(
+            "warning: '{name}' is the whole light; --resource {} writes '{}' alone",
+            part.texture, part.name
+        );
     }
-    if let Some((path, (name, ..))) = &shown {
-        let what = if exr && resource.is_none() {
-            format!(" ('{name}', linear)")
-        } else {
-            String::new()
-        };
-        say!("wrote {}{what}", path.display());
-        if let Some(part) =
-            part_asked_for(&session).filter(|p| exr && resource.is_none() && p.texture != *name)
-        {
-            warn!(
-                "warning: '{name}' is the whole light; --resource {} writes '{}' alone",
-                part.texture, part.name
-            );
-        }
-    }
-    if let Some(path) = &args.json {
-        super::write_json(path, &stats)?;
-    }
-    drop(session);
-    super::validated(&lab)
 }
 
 /// A warning about texels that are not finite.

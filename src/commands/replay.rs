@@ -51,13 +51,8 @@ pub fn run(args: &ReplayArgs) -> Result<(), LabError> {
         cache: Workspace::cache(),
     };
     let lab = Lab::open(home, args.device.options())?;
-    let result = replay(
-        &lab,
-        &args.capture,
-        &manifest,
-        super::open_scene,
-        args.output.as_deref(),
-    )?;
+    let output = args.output.as_deref();
+    let result = replay(&lab, &args.capture, &manifest, super::open_scene, output)?;
     for change in &result.changes {
         say!("{change}");
     }
@@ -77,18 +72,12 @@ pub fn run(args: &ReplayArgs) -> Result<(), LabError> {
         say!("wrote {} images to {}", result.images, output.display());
     }
     super::validated(&lab)?;
+    let images = result.images;
     match result.differences.len() {
         0 => {
-            say!(
-                "identical: {} images, {} texels",
-                result.images,
-                result.texels
-            );
+            say!("identical: {images} images, {} texels", result.texels);
             Ok(())
         }
-        n => Err(LabError::Request(format!(
-            "{n} of {} images differ",
-            result.images
-        ))),
+        n => Err(LabError::Request(format!("{n} of {images} images differ"))),
     }
 }

@@ -69,23 +69,8 @@ pub struct ScreenshotArgs {
     device: DeviceArgs,
 }
 
-/// Takes the picture.
-pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
-    let home = Workspace::find()?;
-    let format = image::ImageFormat::from_path(&args.output)
-        .ok()
-        .filter(|f| matches!(f, image::ImageFormat::Png | image::ImageFormat::Jpeg))
-        .ok_or_else(|| {
-            LabError::Request(format!(
-                "'{}': give it the ending .png or .jpg",
-                args.output.display()
-            ))
-        })?;
-    if !(0.25..=8.0).contains(&args.scale) {
-        return Err(LabError::Request("--scale must be 0.25 to 8".into()));
-    }
-    let gpu = args.device.options();
-    let script = Script {
+fn script(args: &ScreenshotArgs) -> Result<Script, LabError> {
+    Ok(Script {
         size: parse_size(&args.window)?,
         scale: args.scale,
         clicks: args.click.clone(),
@@ -103,7 +88,26 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
             times: args.times,
         }),
         patience: Duration::from_secs(args.patience),
-    };
+    })
+}
+
+/// Takes the picture.
+pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
+    let home = Workspace::find()?;
+    let format = image::ImageFormat::from_path(&args.output)
+        .ok()
+        .filter(|f| matches!(f, image::ImageFormat::Png | image::ImageFormat::Jpeg))
+        .ok_or_else(|| {
+            LabError::Request(format!(
+                "'{}': give it the ending .png or .jpg",
+                args.output.display()
+            ))
+        })?;
+    if !(0.25..=8.0).contains(&args.scale) {
+        return Err(LabError::Request("--scale must be 0.25 to 8".into()));
+    }
+    let gpu = args.device.options();
+    let script = script(args)?;
     let experiment = args
         .experiment
         .as_deref()

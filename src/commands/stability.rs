@@ -5,7 +5,7 @@ use super::adapt::parse_size;
 use super::campaign_bar::bar;
 use crate::campaign::record::write_file;
 use crate::campaign::stability::{
-    Options, Suite, failure_table, failures, run as run_suite, sheet,
+    Options, Report, Suite, failure_table, failures, run as run_suite, sheet,
 };
 use crate::lab::{Lab, LabError, Workspace};
 use crate::metrics::RELMSE;
@@ -51,6 +51,29 @@ pub struct StabilityArgs {
     device: DeviceArgs,
 }
 
+/// Prints a line for each result.
+fn print(report: &Report) {
+    for r in &report.results {
+        let Some(total) = r.part("total") else {
+            continue;
+        };
+        let number = |v: Option<f64>| v.map_or("-".into(), short);
+        let noise = match total.told_apart {
+            Some(false) => " (within noise)",
+            _ => "",
+        };
+        say!(
+            "{:32} {:24} E_t {}{noise}, jump {}/255, flicker {}, relMSE {}",
+            r.about.title(),
+            r.about.method,
+            number(total.e),
+            number(total.jump),
+            number(total.flicker.map(|f| f.mean)),
+            number(total.scores.as_ref().map(|s| s.get(RELMSE)))
+        );
+    }
+}
+
 /// Runs a suite; an error if a method failed in a case.
 pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
     let mut suite = Suite::read(&super::found(&args.suite)).map_err(LabError::Input)?;
@@ -83,26 +106,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
     };
     let reopen = || Lab::open(home.clone(), args.device.options());
     let (counts, report) = run_suite(&reopen, &super::open_scene, &suite, &options, &mut bar(""))?;
-    for r in &report.results {
-        let Some(total) = r.part("total") else {
-            continue;
-        };
-        let number = |v: Option<f64>| v.map_or("-".into(), short);
-        let noise = if total.told_apart == Some(false) {
-            " (within noise)"
-        } else {
-            ""
-        };
-        say!(
-            "{:32} {:24} E_t {}{noise}, jump {}/255, flicker {}, relMSE {}",
-            r.about.title(),
-            r.about.method,
-            number(total.e),
-            number(total.jump),
-            number(total.flicker.map(|f| f.mean)),
-            number(total.scores.as_ref().map(|s| s.get(RELMSE)))
-        );
-    }
+    print(&report);
     say!(
         "wrote {}",
         super::shown(&options.folder.join("index.html")).display()

@@ -37,7 +37,7 @@ pub struct VoxelsArgs {
 const SCHEMA: &str = "conelab-voxels-1";
 
 /// A way of making voxels, and what came of it: figures, or why there are none.
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 struct Mode {
     title: String,
     /// Parameters that differ from the experiment's.
@@ -91,35 +91,23 @@ pub fn run(args: &VoxelsArgs) -> Result<(), LabError> {
         let mut mode = Mode {
             title,
             set,
-            score: None,
-            skipped: None,
-            warnings: Vec::new(),
+            ..Mode::default()
         };
         match voxels_of(&lab, &changed, &loaded, &scene, &wanted) {
             Ok((grid, voxels, warnings)) => {
                 let exact = exact_of(&mut last, grid, &triangles, &surfaces);
                 let found = oracle::compare(&exact.grid, &exact.cells, &voxels);
                 if let Some(folder) = &args.output {
-                    draw(
-                        &lab,
-                        &experiment,
-                        &scene,
-                        &exact.grid,
-                        &found,
-                        &file_stem(folder, &mode.title),
-                    )?;
+                    let stem = file_stem(folder, &mode.title);
+                    draw(&lab, &experiment, &scene, &exact.grid, &found, &stem)?;
                 }
                 mode.warnings = warnings;
                 mode.score = Some(found.score);
             }
             // One of many that this device cannot run is reported; the only one is an error.
             Err(LabError::Input(why)) if args.all => {
-                mode.skipped = Some(
-                    why.iter()
-                        .map(|d| d.message.clone())
-                        .collect::<Vec<_>>()
-                        .join("; "),
-                );
+                let why: Vec<&str> = why.iter().map(|d| d.message.as_str()).collect();
+                mode.skipped = Some(why.join("; "));
             }
             Err(error) => return Err(error),
         }

@@ -4,7 +4,7 @@ use super::super::{adapt, reference, validated, writable, write_json};
 use super::AblateArgs;
 use crate::lab::{Lab, LabError, Workspace, parts_of};
 use crate::measure::reference::{Goal, Reference};
-use crate::metrics::{Linear, relative_distance, relmse};
+use crate::metrics::{Linear, MetricError, relative_distance, relmse};
 use crate::results::table::Table;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -46,25 +46,18 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
     let home = Workspace::find()?;
     let loaded = home.load_of(&experiment).map_err(LabError::Input)?;
     if loaded.graph.ablation.is_empty() {
-        let message = format!(
-            "graph '{}' has no `ablation`: steps from an ideal to the method",
-            loaded.graph.name
-        );
+        let name = &loaded.graph.name;
+        let message =
+            format!("graph '{name}' has no `ablation`: steps from an ideal to the method");
         return Err(LabError::Request(message));
     }
     let scene = Arc::new(adapt::open_scene(&experiment)?);
     let lab = Lab::open(home, args.device.options())?;
-    let reference = reference::with_bar(
-        &lab,
-        &experiment,
-        &scene,
-        args.bounces,
-        Goal::Samples(args.spp),
-    )?;
+    let (bounces, goal) = (args.bounces, Goal::Samples(args.spp));
+    let reference = reference::with_bar(&lab, &experiment, &scene, bounces, goal)?;
 
     let names = parts_of(&loaded.graph);
-    let (mut steps, mut before): (Vec<Step>, BTreeMap<String, Linear>) =
-        (Vec::new(), BTreeMap::new());
+    let (mut steps, mut before) = (Vec::new(), BTreeMap::new());
     for step in loaded.graph.ablation.iter().map(|s| &s.value) {
         let mut set = experiment.clone();
         for (name, value) in &step.set.0 {
@@ -76,38 +69,20 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
         let parts = session.parts()?;
         if let Some(folder) = &args.pictures {
             for (part, light) in &parts {
-                crate::results::picture::write_linear(
-                    &folder.join(format!("{}-{part}.exr", step.title)),
-                    light,
-                )?;
+                let file = folder.join(format!("{}-{part}.exr", step.title));
+                crate::results::picture::write_linear(&file, light)?;
             }
-        }
-        let mut errors = BTreeMap::new();
-        for (part, light) in &parts {
-            let Some(expected) = reference.parts.get(part) else {
-                continue;
-            };
-            let fail =
-                |e: crate::metrics::MetricError| LabError::Request(format!("part '{part}': {e}"));
-            let adds = relative_distance(
-                light,
-                before.get(part).unwrap_or(&expected.mean),
-                &expected.mean,
-            )
-            .map_err(fail)?;
-            errors.insert(
-                part.clone(),
-                [relmse(light, &expected.mean).map_err(fail)?, adds],
-            );
         }
         steps.push(Step {
             title: step.title.clone(),
-            parts: errors,
+            parts: errors(&parts, &before, &reference)?,
         });
         before = parts;
     }
     print(&reference, &steps);
     if let Some(path) = &args.json {
+        let noise = reference.parts.iter();
+        let noise = noise.map(|(n, p)| (n.clone(), p.noise.relmse));
         let ablation = Ablation {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
@@ -115,16 +90,33 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
             scene: scene.name.clone(),
             device: lab.gpu.info.name.clone(),
             reference_samples: reference.samples,
-            noise: reference
-                .parts
-                .iter()
-                .map(|(n, p)| (n.clone(), p.noise.relmse))
-                .collect(),
+            noise: noise.collect(),
             steps,
         };
         write_json(path, &ablation)?;
     }
     validated(&lab)
+}
+
+/// relMSE of each part, and its distance from the step before.
+fn errors(
+    parts: &BTreeMap<String, Linear>,
+    before: &BTreeMap<String, Linear>,
+    reference: &Reference,
+) -> Result<BTreeMap<String, [f64; 2]>, LabError> {
+    let mut errors = BTreeMap::new();
+    for (part, light) in parts {
+        let Some(expected) = reference.parts.get(part) else {
+            continue;
+        };
+        let fail = |e: MetricError| LabError::Request(format!("part '{part}': {e}"));
+        let expected = &expected.mean;
+        let before = before.get(part).unwrap_or(expected);
+        let adds = relative_distance(light, before, expected).map_err(fail)?;
+        let error = relmse(light, expected).map_err(fail)?;
+        errors.insert(part.clone(), [error, adds]);
+    }
+    Ok(errors)
 }
 
 fn print(reference: &Reference, steps: &[Step]) {
