@@ -3,7 +3,7 @@
 use super::attributes::{color_of, uv_of};
 use super::interface::blocks::{EmitterBlock, InstanceBlock};
 use super::shape::Shape;
-use crate::scene::{Lookup, Scene, Side, SmallPicture};
+use crate::scene::{Lookup, Material, Scene, Side, SmallPicture};
 use glam::{Mat4, Vec2, Vec3, Vec4};
 use std::collections::{HashMap, HashSet};
 
@@ -53,28 +53,37 @@ pub(super) struct Emitters {
 }
 
 impl Emitters {
+    /// Numbers the parts by what triangles hold: no file's order shows.
+    fn number_parts(&mut self) {
+        let content = |e: &Emitter| {
+            let bits = |v: &Vec3| v.to_array().map(f32::to_bits);
+            let radiance: Vec<_> = e.radiance.iter().map(bits).collect();
+            (e.instance, e.corners.each_ref().map(bits), radiance)
+        };
+        self.list.sort_by_cached_key(content);
+        let mut next = 0;
+        for emitter in &self.list {
+            self.numbers.insert(emitter.key, (next, emitter.parts));
+            next += emitter.parts * emitter.parts;
+        }
+    }
+
     /// Parts of all emitting triangles; none if there are more than [`MOST_EMITTERS`].
     pub(super) fn new(scene: &Scene, shape: &Shape) -> Emitters {
-        let mut pictures: HashMap<u32, Option<SmallPicture>> = HashMap::new();
-        let mut outsides: HashMap<u32, Vec<Option<Side>>> = HashMap::new();
+        let (mut pictures, mut outsides) = (HashMap::new(), HashMap::<_, Vec<Option<Side>>>::new());
         let (low, high) = scene.bounds();
-        let mut found = Emitters::default();
-        let mut count = 0u32;
+        let (mut found, mut count) = (Emitters::default(), 0u32);
         for (number, draw) in (0u32..).zip(&shape.draws) {
             let Some(material) = scene.materials.get(draw.material as usize) else {
                 continue;
             };
             let model = scene.instance_transform(draw.instance as usize, 0.0);
-            let triangles = (draw.first_index..draw.first_index + draw.index_count)
-                .step_by(3)
-                .map(|first| {
-                    let vertices = [0, 1, 2].map(|k| shape.indices[(first + k) as usize] as usize);
-                    (
-                        first,
-                        vertices,
-                        vertices.map(|v| Vec3::from_slice(&shape.positions[3 * v..3 * v + 3])),
-                    )
-                });
+            let triangles = (draw.first_index..draw.first_index + draw.index_count).step_by(3);
+            let triangles = triangles.map(|first| {
+                let vertices = [0, 1, 2].map(|k| shape.indices[(first + k) as usize] as usize);
+                let corner = |v: usize| Vec3::from_slice(&shape.positions[3 * v..3 * v + 3]);
+                (first, vertices, vertices.map(corner))
+            });
             for (_, _, corners) in triangles.clone() {
                 let [a, b, c] = corners.map(|c| model.transform_point3(c));
                 let area = 0.5 * f64::from((b - a).cross(c - a).length());
@@ -89,74 +98,35 @@ impl Emitters {
             let outside = outsides.entry(mesh).or_insert_with(|| {
                 let scale = model.to_scale_rotation_translation().0.abs().max_element();
                 let longest = LARGEST_LAMP * (high - low).length() / scale;
-                scene
-                    .meshes
-                    .get(mesh as usize)
-                    .map_or_else(Vec::new, |m| m.outsides(longest))
+                let mesh = scene.meshes.get(mesh as usize);
+                mesh.map_or_else(Vec::new, |m| m.outsides(longest))
             });
-            let small = |t: u32| scene.textures.get(t as usize).and_then(|t| t.small(TEXELS));
-            let mut picture = |t: Option<u32>, lookup: Lookup| {
-                let picture = t.and_then(|t| pictures.entry(t).or_insert_with(|| small(t)).clone());
-                picture.map(|picture| (picture, lookup))
-            };
-            let (masked, lookups) = (material.alpha_cutoff > 0.0, material.lookups);
-            let shine = Shine {
-                emission: material.emission,
-                tinted: material.tinted_emission,
-                colors: picture(material.emission_texture, lookups.emission),
-                masked,
-                mask: picture(
-                    material.base_color_texture.filter(|_| masked),
-                    lookups.base_color,
-                ),
-                cutoff: material.alpha_cutoff / material.base_color.w.max(1e-6),
-            };
+            let shine = Shine::new(scene, material, &mut pictures);
             for (first, vertices, corners) in triangles {
                 let uvs = vertices.map(|v| uv_of(&shape.attributes[v]));
                 let tints = vertices.map(|v| color_of(&shape.attributes[v]));
                 let parts = shine.parts(uvs, tints);
                 let mean = |part| {
-                    shine.mean(
-                        part_corners(uvs, parts, part),
-                        part_corners(tints, parts, part),
-                    )
+                    let uvs = part_corners(uvs, parts, part);
+                    shine.mean(uvs, part_corners(tints, parts, part))
                 };
                 let radiance = (0..parts * parts).map(mean).collect();
                 count += parts * parts;
                 if count as usize > MOST_EMITTERS {
                     return Emitters::default();
                 }
-                let outside = outside
-                    .get((first - shape.first_index[mesh as usize]) as usize / 3)
-                    .copied()
-                    .flatten();
-                let key = (number, first);
+                let triangle = (first - shape.first_index[mesh as usize]) as usize / 3;
                 found.list.push(Emitter {
-                    key,
+                    key: (number, first),
                     instance: draw.instance,
                     corners,
-                    outside,
+                    outside: outside.get(triangle).copied().flatten(),
                     parts,
                     radiance,
                 });
             }
         }
-        // Places are drawn by number, and numbers are of what triangles hold alone: no file's order
-        // shows.
-        let content = |e: &Emitter| {
-            let bits = |v: &Vec3| v.to_array().map(f32::to_bits);
-            (
-                e.instance,
-                e.corners.each_ref().map(bits),
-                e.radiance.iter().map(bits).collect::<Vec<_>>(),
-            )
-        };
-        found.list.sort_by_cached_key(content);
-        let mut next = 0;
-        for emitter in &found.list {
-            found.numbers.insert(emitter.key, (next, emitter.parts));
-            next += emitter.parts * emitter.parts;
-        }
+        found.number_parts();
         found
     }
 
@@ -307,6 +277,31 @@ struct Shine {
 }
 
 impl Shine {
+    /// `pictures` has small pictures by texture.
+    fn new(
+        scene: &Scene,
+        material: &Material,
+        pictures: &mut HashMap<u32, Option<SmallPicture>>,
+    ) -> Shine {
+        let small = |t: u32| scene.textures.get(t as usize).and_then(|t| t.small(TEXELS));
+        let mut picture = |t: Option<u32>, lookup: Lookup| {
+            let picture = t.and_then(|t| pictures.entry(t).or_insert_with(|| small(t)).clone());
+            picture.map(|picture| (picture, lookup))
+        };
+        let (masked, lookups) = (material.alpha_cutoff > 0.0, material.lookups);
+        Shine {
+            emission: material.emission,
+            tinted: material.tinted_emission,
+            colors: picture(material.emission_texture, lookups.emission),
+            masked,
+            mask: picture(
+                material.base_color_texture.filter(|_| masked),
+                lookups.base_color,
+            ),
+            cutoff: material.alpha_cutoff / material.base_color.w.max(1e-6),
+        }
+    }
+
     /// Parts of a triangle's edge, so that each has one radiance.
     fn parts(&self, uvs: [Vec4; 3], tints: [Vec4; 3]) -> u32 {
         let pictures = [&self.colors, &self.mask].into_iter().flatten();

@@ -204,6 +204,27 @@ impl Lab {
         ))
     }
 
+    /// The scene on the device, with triangles split at edges longer than `max_edge`.
+    fn scene_gpu(
+        &self,
+        scene: &Arc<Scene>,
+        max_edge: Option<f64>,
+        rays: bool,
+        reuse: Option<&ReusableParts>,
+    ) -> Result<SceneGpu, LabError> {
+        let split = match reuse {
+            Some(reuse) if reuse.shared => return Ok(reuse.scene_gpu.fork(&self.gpu)?),
+            Some(reuse) => return Ok(reuse.scene_gpu.clone()),
+            None => {
+                let limit = self.gpu.info.limits.max_storage_buffer_range;
+                let split = max_edge.map(|edge| split(scene, edge as f32, limit));
+                split.transpose()?.map(Arc::new)
+            }
+        };
+        let whole = split.unwrap_or_else(|| scene.clone());
+        Ok(SceneGpu::new(&self.gpu, whole, scene.origin(), rays)?)
+    }
+
     /// Makes a session, from parts of one in use where they fit; see [`Session::swap_in`]. Shaders
     /// that `loaded` lacks and the experiment runs are compiled.
     ///
@@ -234,23 +255,7 @@ impl Lab {
                 && s.max_edge == plan.max_edge
                 && (s.scene_gpu.has_rays() || !rays)
         };
-        let scene_gpu = match reuse.filter(fits) {
-            Some(reuse) if reuse.shared => reuse.scene_gpu.fork(&self.gpu)?,
-            Some(reuse) => reuse.scene_gpu.clone(),
-            None => {
-                let limit = self.gpu.info.limits.max_storage_buffer_range;
-                let split = plan
-                    .max_edge
-                    .map(|edge| split(&scene, edge as f32, limit))
-                    .transpose()?;
-                SceneGpu::new(
-                    &self.gpu,
-                    split.map_or_else(|| scene.clone(), Arc::new),
-                    scene.origin(),
-                    rays,
-                )?
-            }
-        };
+        let scene_gpu = self.scene_gpu(&scene, plan.max_edge, rays, reuse.filter(fits))?;
         // What textures and buffers hold is of their scene: of another one only the pipelines are
         // taken.
         let parts = match reuse {

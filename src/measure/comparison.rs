@@ -100,6 +100,22 @@ pub struct Request<'a> {
     pub maps: Option<&'a mut TakeMaps<'a>>,
 }
 
+/// Pictures for a display are compared with each other, as is radiance.
+fn check_kinds(pictures: &[Side], reference: &Side) -> Result<(), MetricError> {
+    let differs = |p: &&Side| p.displayed() != reference.displayed();
+    if let Some(other) = pictures.iter().find(differs) {
+        let (shown, radiance) = match other.displayed() {
+            true => (other, reference),
+            false => (reference, other),
+        };
+        return Err(MetricError(format!(
+            "'{}' was made for a display and '{}' is radiance; compare an .exr with an .exr, or a .png with a .png",
+            shown.name, radiance.name
+        )));
+    }
+    Ok(())
+}
+
 /// Compares one or two pictures with a reference.
 ///
 /// # Errors
@@ -109,20 +125,7 @@ pub fn compare(
     reference: &Side,
     mut request: Request,
 ) -> Result<Comparison, MetricError> {
-    if let Some(other) = pictures
-        .iter()
-        .find(|p| p.displayed() != reference.displayed())
-    {
-        let (shown, radiance) = if other.displayed() {
-            (other, reference)
-        } else {
-            (reference, other)
-        };
-        return Err(MetricError(format!(
-            "'{}' was made for a display and '{}' is radiance; compare an .exr with an .exr, or a .png with a .png",
-            shown.name, radiance.name
-        )));
-    }
+    check_kinds(pictures, reference)?;
     let names = part_names(pictures, reference, request.parts)?;
     let mut areas = regions(&reference.parts);
     areas.extend_from_slice(request.masks);
@@ -154,12 +157,8 @@ pub fn compare(
             }
             compared.push(with);
         }
-        parts.push(compare_part(
-            &part,
-            &compared,
-            reference.noise.get(&part).copied(),
-            &areas,
-        ));
+        let noise = reference.noise.get(&part).copied();
+        parts.push(compare_part(&part, &compared, noise, &areas));
     }
     Ok(Comparison {
         schema: SCHEMA.into(),

@@ -112,6 +112,42 @@ pub struct Measured {
     pub reference: Option<Vec<u8>>,
 }
 
+impl Measured {
+    /// Adds the scores against the references.
+    fn score(
+        &mut self,
+        parts: &BTreeMap<String, Linear>,
+        references: &[(u32, Arc<Reference>)],
+        scored: Scored,
+    ) -> Result<(), LabError> {
+        for (number, (bounces, reference)) in references.iter().enumerate() {
+            for (part, light) in parts {
+                if number > 0 && part != "total" {
+                    continue;
+                }
+                let Some(expected) = reference.parts.get(part) else {
+                    continue;
+                };
+                let name = match number {
+                    0 => part.clone(),
+                    _ => format!("{part}, {bounces} bounces"),
+                };
+                self.point
+                    .add(name, light, expected, scored)
+                    .map_err(|why| {
+                        LabError::Request(format!("the part '{part}' cannot be compared: {why}"))
+                    })?;
+                if number == 0 && part == "total" {
+                    self.error_map = Some(pictures::error_map(light, &expected.mean)?);
+                    self.reference = Some(pictures::displayed(&expected.mean)?);
+                }
+            }
+            self.point.references.insert(*bounces, reference.samples);
+        }
+        Ok(())
+    }
+}
+
 /// Measures an experiment on its scene (with the experiment's lighting, see
 /// [`Experiment::adapted`]). Timed frames execute every pass that the picture needs, and nothing
 /// else. Scored components come from separate frames, because writing them costs time. The linear
@@ -132,38 +168,21 @@ pub fn measure(
     scored: Scored,
 ) -> Result<Measured, LabError> {
     let loaded = warm.graph(&lab.home, &experiment.graph)?.clone();
-    let wanted: Vec<String> = parts_of(&loaded.graph)
-        .into_iter()
-        .filter(|p| scored.has(&p.name))
-        .map(|p| p.texture)
-        .collect();
-    let together = !references.is_empty()
-        && wanted
-            .iter()
-            .all(|texture| loaded.graph.hdr.as_ref() == Some(texture));
+    let parts = parts_of(&loaded.graph).into_iter();
+    let parts = parts.filter(|p| scored.has(&p.name));
+    let wanted: Vec<String> = parts.map(|p| p.texture).collect();
+    let hdr = loaded.graph.hdr.as_ref();
+    let together = !references.is_empty() && wanted.iter().all(|texture| hdr == Some(texture));
     let extra = if together { &wanted[..] } else { &[] };
+    let reuse = warm.timed.as_ref();
     let Timed {
         mut session,
         times,
         warmup,
-    } = timed(
-        lab,
-        &loaded,
-        experiment,
-        scene,
-        frames,
-        extra,
-        warm.timed.as_ref(),
-    )?;
+    } = timed(lab, &loaded, experiment, scene, frames, extra, reuse)?;
     let warnings = session.failed_checks()?;
-    let stats = stats::collect(
-        &lab.gpu.info,
-        &experiment.name,
-        &session,
-        &times,
-        warmup,
-        warnings,
-    );
+    let (info, name) = (&lab.gpu.info, &experiment.name);
+    let stats = stats::collect(info, name, &session, &times, warmup, warnings);
     let picture = match &loaded.graph.output {
         Some(name) => Some(pictures::thumbnail(&session.texels(name, 0, 0)?)?),
         None => None,
@@ -177,44 +196,20 @@ pub fn measure(
             parts_alone(lab, warm, experiment, &loaded, scene, frames, wanted)?
         }
     };
-    let mut point = Point {
-        stats,
-        scores: BTreeMap::new(),
-        noise: BTreeMap::new(),
-        structure_noise: BTreeMap::new(),
-        references: BTreeMap::new(),
-    };
-    let (mut error_map, mut shown) = (None, None);
-    for (number, (bounces, reference)) in references.iter().enumerate() {
-        for (part, light) in &parts {
-            let Some(expected) = reference
-                .parts
-                .get(part)
-                .filter(|_| number == 0 || part == "total")
-            else {
-                continue;
-            };
-            let name = if number == 0 {
-                part.clone()
-            } else {
-                format!("{part}, {bounces} bounces")
-            };
-            point.add(name, light, expected, scored).map_err(|why| {
-                LabError::Request(format!("the part '{part}' cannot be compared: {why}"))
-            })?;
-            if number == 0 && part == "total" {
-                error_map = Some(pictures::error_map(light, &expected.mean)?);
-                shown = Some(pictures::displayed(&expected.mean)?);
-            }
-        }
-        point.references.insert(*bounces, reference.samples);
-    }
-    Ok(Measured {
-        point,
+    let mut measured = Measured {
+        point: Point {
+            stats,
+            scores: BTreeMap::new(),
+            noise: BTreeMap::new(),
+            structure_noise: BTreeMap::new(),
+            references: BTreeMap::new(),
+        },
         picture,
-        error_map,
-        reference: shown,
-    })
+        error_map: None,
+        reference: None,
+    };
+    measured.score(&parts, references, scored)?;
+    Ok(measured)
 }
 
 /// An experiment that has run.

@@ -32,18 +32,11 @@ pub struct MapFile {
 /// A size that PNG or EXR does not support.
 pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
     let pairs = || compared.test.rgb.iter().zip(&compared.reference.rgb);
-    let relative: Vec<f32> = pairs()
-        .map(|(x, r)| {
-            (x.iter()
-                .zip(r)
-                .map(|(x, r)| relative_square(*x, *r, *r))
-                .sum::<f64>()
-                / 3.0) as f32
-        })
-        .collect();
-    let difference: Vec<f32> = pairs()
-        .map(|(x, r)| (luminance(*x) - luminance(*r)) as f32)
-        .collect();
+    let square = |(x, r): (&f32, &f32)| relative_square(*x, *r, *r);
+    let relative = pairs().map(|(x, r)| x.iter().zip(r).map(square).sum::<f64>() / 3.0);
+    let relative: Vec<f32> = relative.map(|v| v as f32).collect();
+    let difference = pairs().map(|(x, r)| (luminance(*x) - luminance(*r)) as f32);
+    let difference: Vec<f32> = difference.collect();
     let structure = compared.structure().map();
     // The share of dark pixels in the mean is known.
     let full = (compared.dark / super::DARK).max(f64::MIN_POSITIVE);

@@ -129,65 +129,39 @@ pub fn draw(painter: &Painter, picture: Rect, right: bool, timers: &Timers, long
     painter.rect_filled(panel, 0.0, Color32::from_black_alpha(176));
     let inner = panel.shrink(MARGIN);
     let line = |n: f32| {
-        Rect::from_min_size(
-            inner.min + Vec2::new(0.0, n * LINE),
-            Vec2::new(inner.width(), LINE),
-        )
+        let size = Vec2::new(inner.width(), LINE);
+        Rect::from_min_size(inner.min + Vec2::new(0.0, n * LINE), size)
     };
     let (font, numbers) = (FontId::proportional(11.5), FontId::monospace(10.5));
-    for (i, text) in timers.title.iter().enumerate() {
-        painter.text(
-            line(i as f32).left_center(),
-            Align2::LEFT_CENTER,
-            text,
-            font.clone(),
-            Color32::from_gray(210),
-        );
-    }
-    let number = |at: Rect, ms: f64, color: Color32| {
-        painter.text(
-            at.right_center(),
-            Align2::RIGHT_CENTER,
-            format!("{ms:.3}"),
-            numbers.clone(),
-            color,
-        );
+    let left = |painter: &Painter, at: Pos2, text: &str, color: Color32| {
+        painter.text(at, Align2::LEFT_CENTER, text, font.clone(), color);
     };
+    let number = |at: Rect, ms: f64, color: Color32| {
+        let (at, text) = (at.right_center(), format!("{ms:.3}"));
+        painter.text(at, Align2::RIGHT_CENTER, text, numbers.clone(), color);
+    };
+    for (i, text) in timers.title.iter().enumerate() {
+        let at = line(i as f32).left_center();
+        left(&painter, at, text, Color32::from_gray(210));
+    }
     let total = line(timers.title.len() as f32);
-    painter.text(
-        total.left_center(),
-        Align2::LEFT_CENTER,
-        format!("GPU ms, {}", timers.statistic),
-        font.clone(),
-        Color32::WHITE,
-    );
+    let text = format!("GPU ms, {}", timers.statistic);
+    left(&painter, total.left_center(), &text, Color32::WHITE);
     number(total, timers.total, Color32::WHITE);
     for (i, (name, ms)) in rows.iter().enumerate() {
         let at = line(lines + i as f32);
-        let part = if longest > 0.0 {
-            (ms / longest).clamp(0.0, 1.0) as f32
-        } else {
-            0.0
+        let part = match longest > 0.0 {
+            true => (ms / longest).clamp(0.0, 1.0) as f32,
+            false => 0.0,
         };
-        let bar = Rect::from_min_size(
-            at.min + Vec2::new(0.0, 1.0),
-            Vec2::new(at.width() * part, LINE - 2.0),
-        );
-        painter.rect_filled(
-            bar,
-            1.0,
-            color(name.trim_end_matches(SKIPPED)).gamma_multiply(0.55),
-        );
+        let size = Vec2::new(at.width() * part, LINE - 2.0);
+        let bar = Rect::from_min_size(at.min + Vec2::new(0.0, 1.0), size);
+        let fill = color(name.trim_end_matches(SKIPPED)).gamma_multiply(0.55);
+        painter.rect_filled(bar, 1.0, fill);
         let names = Rect::from_min_max(at.min, Pos2::new(at.right() - 44.0, at.bottom()));
-        painter
-            .with_clip_rect(names.intersect(painter.clip_rect()))
-            .text(
-                at.left_center() + Vec2::new(3.0, 0.0),
-                Align2::LEFT_CENTER,
-                name,
-                font.clone(),
-                Color32::from_gray(235),
-            );
+        let clipped = painter.with_clip_rect(names.intersect(painter.clip_rect()));
+        let start = at.left_center() + Vec2::new(3.0, 0.0);
+        left(&clipped, start, name, Color32::from_gray(235));
         number(at, *ms, Color32::from_gray(235));
     }
 }

@@ -25,5 +25,6 @@ pub(crate) use failures::{failures, sheet, table as failure_table};
 pub use file::Suite;
 pub(crate) use file::check;
 pub(crate) use plan::Options;
+pub(crate) use record::Report;
 pub(crate) use run::run;
 pub use score::{change, flicker, settling, step};

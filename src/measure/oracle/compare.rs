@@ -68,7 +68,7 @@ pub struct ShapeScore {
 }
 
 /// Scores, and cells by index.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Comparison {
     pub score: Score,
     /// Cells in both sets, and borderline cells of the voxelizer.
@@ -79,18 +79,21 @@ pub struct Comparison {
     pub extras: Vec<u32>,
 }
 
+/// The items whose bits are set.
+fn among<T>(list: &mut [T], bits: u8) -> impl Iterator<Item = &mut T> {
+    let set = move |(i, _): &(usize, &mut T)| bits >> i & 1 != 0;
+    list.iter_mut()
+        .enumerate()
+        .filter(set)
+        .map(|(_, item)| item)
+}
+
 /// Compares a voxelizer's cells with the exact ones; both sorted by index.
 pub fn compare(grid: &Grid, exact: &[Cell], voxels: &[Voxel]) -> Comparison {
-    let mut out = Comparison {
-        score: Score::default(),
-        right: Vec::new(),
-        holes: Vec::new(),
-        extras: Vec::new(),
-    };
+    let mut out = Comparison::default();
     let mut errors = Errors::default();
     let mut shapes: [(ShapeScore, Errors); SHAPES.len()] = Default::default();
-    let mut thin_found = 0;
-    let mut found = 0;
+    let (mut thin_found, mut found) = (0, 0);
     let mut rest = voxels.iter().peekable();
     for cell in exact {
         while let Some(voxel) = rest.next_if(|v| v.number < cell.number) {
@@ -114,11 +117,7 @@ pub fn compare(grid: &Grid, exact: &[Cell], voxels: &[Voxel]) -> Comparison {
             }
             None => out.holes.push(cell.number),
         }
-        for (_, (shape, errors)) in shapes
-            .iter_mut()
-            .enumerate()
-            .filter(|(i, _)| cell.shapes >> i & 1 != 0)
-        {
+        for (shape, errors) in among(&mut shapes, cell.shapes) {
             shape.exact += 1;
             match voxel {
                 Some(voxel) => errors.add(cell, voxel),
@@ -129,13 +128,7 @@ pub fn compare(grid: &Grid, exact: &[Cell], voxels: &[Voxel]) -> Comparison {
     out.extras.extend(rest.map(|v| v.number));
     for extra in &out.extras {
         let near = shapes_near(grid, exact, *extra);
-        for (_, (shape, _)) in shapes
-            .iter_mut()
-            .enumerate()
-            .filter(|(i, _)| near >> i & 1 != 0)
-        {
-            shape.extras += 1;
-        }
+        among(&mut shapes, near).for_each(|(shape, _)| shape.extras += 1);
     }
     let score = &mut out.score;
     score.voxels = voxels.len() as u64;

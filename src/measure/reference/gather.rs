@@ -95,6 +95,16 @@ impl Tracer {
             .reference(true)
     }
 
+    /// The graph of references, loaded once.
+    fn graph(&mut self, lab: &Lab) -> Result<Loaded, LabError> {
+        let loaded = match &self.loaded {
+            Some(loaded) => loaded.clone(),
+            None => lab.home.load(key::GRAPH).map_err(LabError::Input)?,
+        };
+        self.loaded = Some(loaded.clone());
+        Ok(loaded)
+    }
+
     fn sums(
         &mut self,
         lab: &Lab,
@@ -104,21 +114,13 @@ impl Tracer {
         goal: Goal,
         progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
     ) -> Result<Traced, LabError> {
-        let loaded = match &self.loaded {
-            Some(loaded) => loaded.clone(),
-            None => lab.home.load(key::GRAPH).map_err(LabError::Input)?,
-        };
-        self.loaded = Some(loaded.clone());
+        let loaded = self.graph(lab)?;
         let mut traced = key::traced_by(&loaded, experiment, bounces)?;
-        let folder = lab
-            .home
-            .root
-            .join("captures/reference")
-            .join(key::key(&traced, &loaded, scene)?);
-        let mut sums = match store::read(&folder, traced.size, &loaded.graph)? {
-            Some(sums) => sums,
-            None => Sums::new(traced.size, &loaded.graph.parts),
-        };
+        let folder = lab.home.root.join("captures/reference");
+        let folder = folder.join(key::key(&traced, &loaded, scene)?);
+        let graph = &loaded.graph;
+        let sums = store::read(&folder, traced.size, graph)?;
+        let mut sums = sums.unwrap_or_else(|| Sums::new(traced.size, &graph.parts));
         let mut now = state(&sums, goal)?;
         if now.samples >= now.goal {
             return Ok(Traced {
@@ -129,19 +131,9 @@ impl Tracer {
         }
         let per_frame = samples_per_frame(lab.gpu.info.kind, traced.size);
         traced.set("samples", &per_frame.to_string());
-        let wanted = loaded
-            .graph
-            .parts
-            .iter()
-            .map(|p| store::sum_texture(&p.name))
-            .collect();
-        let mut session = lab.build(
-            &traced,
-            &loaded,
-            scene.clone(),
-            wanted,
-            self.shared.as_ref(),
-        )?;
+        let wanted = graph.parts.iter().map(|p| store::sum_texture(&p.name));
+        let (wanted, reuse) = (wanted.collect(), self.shared.as_ref());
+        let mut session = lab.build(&traced, &loaded, scene.clone(), wanted, reuse)?;
         let (mut kept, mut all_kept) = (Instant::now(), true);
         while now.samples < now.goal {
             frame(lab, &mut session, &mut sums, per_frame)?;
@@ -160,11 +152,9 @@ impl Tracer {
             }
             // If a block takes long, all earlier ones have been saved.
             if stop && all_kept {
-                let before = store::read(&folder, traced.size, &loaded.graph)?;
-                let block = store::BLOCK;
-                sums = before.ok_or_else(|| {
-                    LabError::Request(format!("stopped before the first {block} samples"))
-                })?;
+                let before = store::read(&folder, traced.size, graph)?;
+                let why = format!("stopped before the first {} samples", store::BLOCK);
+                sums = before.ok_or(LabError::Request(why))?;
                 break;
             }
         }

@@ -8,9 +8,11 @@ use crate::graph::{Graph, LightPart};
 use crate::lab::LabError;
 use crate::metrics::{Kind, Linear, MetricError, Noise, relmse, structure_noise};
 use crate::vulkan::DeviceInfo;
+use exr::meta::MetaData;
+use exr::meta::header::Header;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels,
-    ReadLayers, WritableImage,
+    ReadLayers, Text, WritableImage,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -261,6 +263,54 @@ fn read_record(json: &Path) -> Result<Option<Record>, LabError> {
         .map_err(|e| failed(json, format!("{e}; delete the folder")))
 }
 
+impl Sums {
+    /// Reads the content of an EXR with these parts, this size and number of samples.
+    fn read(&mut self, bytes: &[u8]) -> Result<(), String> {
+        let meta = MetaData::read_from_buffered(Cursor::new(bytes), false);
+        let headers = meta.map_err(|e| e.to_string())?.headers;
+        // Before the texels, because sizes decide the memory.
+        let size = (self.size.0 as usize, self.size.1 as usize);
+        let fits = |h: &Header| {
+            (h.layer_size.width(), h.layer_size.height()) == size && h.channels.list.len() == 4
+        };
+        if headers.len() != 2 * self.parts.len() || !headers.iter().all(fits) {
+            return Err("its layers are not those of the reference graph".into());
+        }
+        let image = exr::prelude::read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .all_layers()
+            .all_attributes()
+            .from_buffered(Cursor::new(bytes))
+            .map_err(|e| e.to_string())?;
+        for (part, halves) in &mut self.parts {
+            for (half, texels) in halves.iter_mut().enumerate() {
+                let name = format!("{part}.{half}");
+                let named = |n: &Text| *n == *name.as_str();
+                let mut layers = image.layer_data.iter();
+                let layer = layers.find(|l| l.attributes.layer_name.as_ref().is_some_and(named));
+                let layer = layer.ok_or_else(|| format!("it has no layer '{name}'"))?;
+                for (channel, i) in [("R", 0), ("G", 1), ("B", 2), ("A", 3)] {
+                    let found = layer.channel_data.list.iter().find(|c| c.name == *channel);
+                    let Some(FlatSamples::F32(values)) = found.map(|c| &c.sample_data) else {
+                        let what = "of 32-bit floats";
+                        return Err(format!("layer '{name}' has no channel {channel} {what}"));
+                    };
+                    texels.iter_mut().zip(values).for_each(|(t, v)| t[i] = *v);
+                }
+            }
+        }
+        let count = self.samples as f64;
+        let counted =
+            |texels: &Vec<[f32; 4]>| texels.iter().all(|t| f64::from(t[3]) * 2.0 == count);
+        match self.parts.values().flatten().all(counted) {
+            true => Ok(()),
+            false => Err("it does not hold as many samples as reference.json says".into()),
+        }
+    }
+}
+
 /// The sums in a folder; `None` without `reference.json` or without the file that it names.
 pub(super) fn read(
     folder: &Path,
@@ -287,61 +337,9 @@ pub(super) fn read(
     if hex(&Sha256::digest(&bytes)) != record.sha256 {
         return Err(wrong("its content does not match its checksum"));
     }
-    let meta = exr::meta::MetaData::read_from_buffered(Cursor::new(&bytes), false)
-        .map_err(|e| wrong(&e.to_string()))?;
-    // Before the texels, because sizes decide the memory.
-    let fits = |h: &exr::meta::header::Header| {
-        (h.layer_size.width(), h.layer_size.height()) == (size.0 as usize, size.1 as usize)
-            && h.channels.list.len() == 4
-    };
-    if meta.headers.len() != 2 * graph.parts.len() || !meta.headers.iter().all(fits) {
-        return Err(wrong("its layers are not those of the reference graph"));
-    }
-    let image = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        .from_buffered(Cursor::new(&bytes))
-        .map_err(|e| wrong(&e.to_string()))?;
     let mut sums = Sums::new(size, &graph.parts);
     sums.samples = record.samples;
-    for (part, halves) in &mut sums.parts {
-        for (half, texels) in halves.iter_mut().enumerate() {
-            let name = format!("{part}.{half}");
-            let layer = image.layer_data.iter().find(|l| {
-                l.attributes
-                    .layer_name
-                    .as_ref()
-                    .is_some_and(|n| *n == *name.as_str())
-            });
-            let layer = layer.ok_or_else(|| wrong(&format!("it has no layer '{name}'")))?;
-            for (channel, i) in [("R", 0), ("G", 1), ("B", 2), ("A", 3)] {
-                let found = layer.channel_data.list.iter().find(|c| c.name == *channel);
-                match found.map(|c| &c.sample_data) {
-                    Some(FlatSamples::F32(values)) => {
-                        texels.iter_mut().zip(values).for_each(|(t, v)| t[i] = *v)
-                    }
-                    _ => {
-                        return Err(wrong(&format!(
-                            "layer '{name}' has no channel {channel} of 32-bit floats"
-                        )));
-                    }
-                }
-            }
-        }
-    }
-    let counted = |texels: &Vec<[f32; 4]>| {
-        texels
-            .iter()
-            .all(|t| f64::from(t[3]) * 2.0 == record.samples as f64)
-    };
-    if !sums.parts.values().flatten().all(counted) {
-        return Err(wrong(
-            "it does not hold as many samples as reference.json says",
-        ));
-    }
+    sums.read(&bytes).map_err(|e| wrong(&e))?;
     keep_noise(&json, record, &sums)?;
     Ok(Some(sums))
 }

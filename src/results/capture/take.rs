@@ -82,57 +82,30 @@ pub fn take(
     std::fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
     // The process id tells later whether the writing program still runs.
     let prefix = format!(".{name}.partial-{}-", std::process::id());
-    let partial = tempfile::Builder::new()
-        .prefix(&prefix)
-        .tempdir_in(folder)
-        .map_err(|e| failed(folder, e))?;
+    let partial = tempfile::Builder::new().prefix(&prefix).tempdir_in(folder);
+    let partial = partial.map_err(|e| failed(folder, e))?;
     let path = partial.path();
 
-    let graph_file = write_sources(
-        &graph,
-        &linked,
-        &lab.home.graph_path(&experiment.graph),
-        &lab.home.folders(),
-        path,
-    )?;
+    let main = lab.home.graph_path(&experiment.graph);
+    let graph_file = write_sources(&graph, &linked, &main, &lab.home.folders(), path)?;
     let scene = experiment.adapted(scene)?;
-    let camera = camera_of(experiment, &scene)?;
-    let mut resolved = experiment.clone();
-    resolved.graph.clone_from(&graph_file);
+    write_experiment(experiment, &graph_file, &graph.params, &scene, path)?;
     // From here on only the capture's content is used, so that missing files are detected now.
-    let text = resolved_text(
-        &resolved,
-        &graph.params,
-        &camera,
-        &scene,
-        &path.join(EXPERIMENT),
-    )?;
-    write(&path.join(EXPERIMENT), text.as_bytes())?;
     let resolved = experiment_of(path, &experiment.name)?;
     let scene = resolved.adapted(scene)?;
-    let sha256 = scene_hash(&scene);
-    let scene_name = scene.name.clone();
+    let scene_record = SceneRecord {
+        spec: experiment.scene.clone(),
+        name: scene.name.clone(),
+        sha256: scene_hash(&scene),
+    };
+    let named = |graph: &Graph| images_of(graph, &what.resources);
     let Rendered {
         images,
         frames,
         stats,
-    } = render(
-        lab,
-        path,
-        &resolved,
-        scene,
-        (what.frames, what.step),
-        |graph| images_of(graph, &what.resources),
-    )?;
+    } = render(lab, path, &resolved, scene, (what.frames, what.step), named)?;
     write_pictures(path, &images)?;
-    if what.timers != Rows::None
-        && let Some((_, texels)) = images.iter().find(|i| i.0.file == "picture.png")
-    {
-        let params = resolved.params_over(&graph.params)?;
-        let timers = timers_of(what.timers, &graph, &params, &stats, experiment.size);
-        let stamped = stamped(&lab.gpu, texels, &timers)?;
-        write(&path.join("timers.png"), &picture::png(&stamped)?)?;
-    }
+    write_timers(lab, what.timers, (&graph, &resolved), &stats, &images, path)?;
     write(&path.join("stats.json"), &json(&stats)?)?;
     let manifest = Manifest {
         schema: SCHEMA.into(),
@@ -142,11 +115,7 @@ pub fn take(
         when: rfc3339(SystemTime::now()),
         experiment: experiment.name.clone(),
         graph: graph_file,
-        scene: SceneRecord {
-            spec: experiment.scene.clone(),
-            name: scene_name,
-            sha256,
-        },
+        scene: scene_record,
         size: [experiment.size.0, experiment.size.1],
         frames,
         step: what.step,
@@ -154,11 +123,7 @@ pub fn take(
         files: hashes(path)?,
     };
     write(&path.join(MANIFEST), &json(&manifest)?)?;
-    make_readable(path).map_err(|e| failed(path, e))?;
-    let target = publish(path, folder, &name, what.numbered)?;
-    // The folder has been renamed, so there is nothing left to clean up.
-    let _ = partial.keep();
-    Ok(target)
+    finish(partial, folder, &name, what.numbered)
 }
 
 fn write_pictures(folder: &Path, images: &[(Image, Texels)]) -> Result<(), LabError> {
@@ -256,6 +221,55 @@ fn make_readable(path: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
+/// Writes the picture with times, if there are any to draw.
+fn write_timers(
+    lab: &Lab,
+    rows: Rows,
+    (graph, experiment): (&Graph, &Experiment),
+    stats: &Stats,
+    images: &[(Image, Texels)],
+    capture: &Path,
+) -> Result<(), LabError> {
+    let picture = images.iter().find(|i| i.0.file == "picture.png");
+    if let Some((_, texels)) = picture.filter(|_| rows != Rows::None) {
+        let params = experiment.params_over(&graph.params)?;
+        let timers = timers_of(rows, graph, &params, stats, experiment.size);
+        let bytes = picture::png(&stamped(&lab.gpu, texels, &timers)?)?;
+        write(&capture.join("timers.png"), &bytes)?;
+    }
+    Ok(())
+}
+
+/// Gives the folder its name.
+fn finish(
+    partial: tempfile::TempDir,
+    folder: &Path,
+    name: &str,
+    numbered: bool,
+) -> Result<PathBuf, LabError> {
+    let path = partial.path();
+    make_readable(path).map_err(|e| failed(path, e))?;
+    let target = publish(path, folder, name, numbered)?;
+    // The folder has been renamed, so there is nothing left to clean up.
+    let _ = partial.keep();
+    Ok(target)
+}
+
+/// Writes the experiment with everything that it sets, on the capture's copy of the graph.
+fn write_experiment(
+    experiment: &Experiment,
+    graph_file: &str,
+    params: &Params,
+    scene: &Scene,
+    capture: &Path,
+) -> Result<(), LabError> {
+    let (camera, file) = (camera_of(experiment, scene)?, capture.join(EXPERIMENT));
+    let mut resolved = experiment.clone();
+    resolved.graph = graph_file.into();
+    let text = resolved_text(&resolved, params, &camera, scene, &file)?;
+    write(&file, text.as_bytes())
+}
+
 /// Writes every source file of the graph and its shaders where the program looks for them. Returns
 /// the name of the graph's file.
 fn write_sources(
@@ -276,23 +290,15 @@ fn write_sources(
             true => Path::new(main_name),
             false => file.strip_prefix(&folders.passes).unwrap_or(file),
         };
-        if name
-            .components()
-            .any(|c| !matches!(c, Component::Normal(_)))
-        {
-            return Err(failed(
-                file,
-                "it lies outside the folder of graphs and cannot be captured; move it there",
-            ));
+        let mut components = name.components();
+        if components.any(|c| !matches!(c, Component::Normal(_))) {
+            let why = "it lies outside the folder of graphs and cannot be captured; move it there";
+            return Err(failed(file, why));
         }
-        if wanted
-            .insert(Path::new("passes").join(name), text)
-            .is_some_and(|other| other != text)
-        {
-            return Err(failed(
-                file,
-                format!("an include has the name of the graph, '{main_name}'; rename one"),
-            ));
+        let other = wanted.insert(Path::new("passes").join(name), text);
+        if other.is_some_and(|other| other != text) {
+            let why = format!("an include has the name of the graph, '{main_name}'; rename one");
+            return Err(failed(file, why));
         }
     }
     // Generated files depend on parameters. Files of other options are included, so that a capture
