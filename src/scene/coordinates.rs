@@ -1,6 +1,7 @@
 //! Texture coordinates of materials: each texture names its source, and a vertex has two sets.
 
 use super::Lookup;
+use super::warnings::Warnings;
 
 /// The two sources of texture coordinates of a material's vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,8 +23,8 @@ impl<S: Clone + Default + PartialEq> References<S> {
         self.list.len() - 1
     }
 
-    /// The two most used sources, earlier ones first, and whether other sources are dropped.
-    pub fn sources(&self) -> (UvSources<S>, bool) {
+    /// The two most used sources, earlier ones first. `name` is the material's.
+    pub fn sources(&self, name: &str, warnings: &mut Warnings) -> UvSources<S> {
         let mut counts: Vec<(&S, usize)> = Vec::new();
         for (source, _) in &self.list {
             match counts.iter_mut().find(|(known, _)| *known == source) {
@@ -38,7 +39,12 @@ impl<S: Clone + Default + PartialEq> References<S> {
             first: sources.next().unwrap_or_default(),
             second: sources.next(),
         };
-        (found, sources.next().is_some())
+        if sources.next().is_some() {
+            let what = "textures of one material have more than two kinds of coordinates (sets or transforms); the \
+                        rest takes the commonest";
+            warnings.add(what, name);
+        }
+        found
     }
 
     /// The lookup of a texture. A texture with a third source falls back to the first set.

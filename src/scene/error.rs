@@ -1,7 +1,7 @@
 //! Errors of scenes, each with a remedy.
 
-use crate::files::FileError;
-use std::path::PathBuf;
+use crate::files::{FileError, read_input};
+use std::path::{Path, PathBuf};
 
 /// An error that ends the opening or writing of a scene.
 #[derive(Debug, thiserror::Error)]
@@ -48,4 +48,23 @@ pub enum SceneError {
     /// No exporter supports the extension.
     #[error("cannot export to {}: the extension must be .obj, .gltf or .glb", path.display())]
     ExportFormat { path: PathBuf },
+}
+
+impl SceneError {
+    /// A model that cannot be loaded.
+    pub(super) fn model(path: &Path) -> impl Fn(String) -> SceneError {
+        move |message| SceneError::Model {
+            path: path.into(),
+            message,
+        }
+    }
+}
+
+/// The bytes of a model file of at most `most` bytes.
+pub(super) fn read_model(path: &Path, most: u64) -> Result<Vec<u8>, SceneError> {
+    read_input(path, most).map_err(|source| SceneError::Read {
+        path: path.into(),
+        hint: "Check the path and its permissions".into(),
+        source,
+    })
 }

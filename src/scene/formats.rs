@@ -71,10 +71,7 @@ pub(super) fn load_model(
     clip: Option<&str>,
     progress: Progress,
 ) -> Result<Scene, SceneError> {
-    let fail = |message: String| SceneError::Model {
-        path: path.into(),
-        message,
-    };
+    let fail = SceneError::model(path);
     progress.reads(path);
     let extension = ending(path);
     let Some(format) = FORMATS

@@ -16,14 +16,14 @@ use std::path::Path;
 use glam::Mat4;
 use indexmap::IndexSet;
 
-use crate::files::read_input;
-
+use super::error::read_model;
 use super::mesh::prepare_all;
 use super::phong::{Finder, decide, grey};
 use super::progress::Progress;
 use super::texture::Requests;
 use super::warnings::Warnings;
 use super::{Instance, Material, Mesh, Scene, SceneError};
+use geometry::Piece;
 use library::Library;
 use lines::decode;
 pub(super) use lines::{shown, without_comment};
@@ -32,20 +32,22 @@ use material::{Pictures, Read, Surface, surface_of};
 /// Files larger than this are refused.
 const MAX_BYTES: u64 = 4 << 30;
 
+fn shown_once((mesh, of): (u32, &Mesh)) -> Instance {
+    Instance {
+        name: of.name.clone(),
+        mesh,
+        transform: Mat4::IDENTITY,
+        mover: None,
+    }
+}
+
 /// Geometry, materials and textures of an OBJ file; no lights, cameras or sky.
 pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
-    let fail = |message: String| SceneError::Model {
-        path: path.into(),
-        message,
-    };
+    let fail = SceneError::model(path);
     progress.step("reading", 0.0)?;
-    let bytes = read_input(path, MAX_BYTES).map_err(|source| SceneError::Read {
-        path: path.into(),
-        hint: "Check the path and its permissions".into(),
-        source,
-    })?;
+    let bytes = read_model(path, MAX_BYTES)?;
     let mut warnings = Warnings::default();
-    let geometry = geometry::read(&decode(bytes), &mut warnings, progress).map_err(fail)?;
+    let geometry = geometry::read(&decode(bytes), &mut warnings, progress).map_err(&fail)?;
 
     progress.step("materials", 0.4)?;
     let mut finder = Finder::new(path.parent().unwrap_or(Path::new("")));
@@ -55,62 +57,41 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     progress.step("textures", 0.5)?;
     let (mut textures, texture_warnings) = requests.load(progress)?;
     let owners: Vec<usize> = materials.iter().map(|(library, _)| *library).collect();
-    let asked = materials
-        .iter_mut()
-        .map(|(_, read)| &mut read.asked)
-        .collect();
-    decide(
-        asked,
-        &mut textures,
-        &material::WORDS,
-        |number, name, what| {
-            if let Some(library) = owners
-                .get(number)
-                .and_then(|owner| libraries.get_mut(*owner))
-            {
-                library.warnings.add(what, shown(name));
-            }
-        },
-    );
+    let asked = materials.iter_mut().map(|(_, read)| &mut read.asked);
+    let warn = |number: usize, name: &str, what: &str| {
+        let owner = owners.get(number);
+        if let Some(library) = owner.and_then(|owner| libraries.get_mut(*owner)) {
+            library.warnings.add(what, shown(name));
+        }
+    };
+    decide(asked.collect(), &mut textures, &material::WORDS, warn);
 
     progress.step("meshes", 0.7)?;
     let surfaces = surfaces(&geometry.used, &libraries, &materials, &mut warnings);
-    let mut materials: Vec<Material> = materials
-        .into_iter()
-        .map(|(_, read)| read.asked.material)
-        .collect();
+    let materials = materials.into_iter();
+    let mut materials: Vec<Material> = materials.map(|(_, read)| read.asked.material).collect();
+    let material = |piece: &Piece| surface_of(&surfaces, piece.material).material as usize;
     if geometry
         .pieces
         .iter()
-        .any(|piece| surface_of(&surfaces, piece.material).material as usize == materials.len())
+        .any(|piece| material(piece) == materials.len())
     {
         materials.push(grey(!geometry.colors.is_empty()));
     }
-    let raw = meshes::build(&geometry, &surfaces, &mut warnings, progress).map_err(fail)?;
+    let raw = meshes::build(&geometry, &surfaces, &mut warnings, progress).map_err(&fail)?;
     drop(geometry);
-    let (meshes, dropped) = prepare_all(raw, &materials, progress).map_err(fail)?;
+    let (meshes, dropped) = prepare_all(raw, &materials, progress).map_err(&fail)?;
 
     let file = path.display().to_string();
     let mut told = warnings.lines(&file);
     told.extend(dropped.warning(&file));
-    told.extend(
-        libraries
-            .iter()
-            .flat_map(|library| library.warnings.lines(library.path.display())),
-    );
+    let of_libraries = libraries.iter();
+    told.extend(of_libraries.flat_map(|l| l.warnings.lines(l.path.display())));
     told.extend(texture_warnings);
-    let meshes: Vec<Mesh> = meshes
-        .into_iter()
-        .filter(|mesh| !mesh.submeshes.is_empty())
-        .collect();
-    let instances = meshes.iter().enumerate().map(|(i, mesh)| Instance {
-        name: mesh.name.clone(),
-        mesh: i as u32,
-        transform: Mat4::IDENTITY,
-        mover: None,
-    });
+    let meshes = meshes.into_iter();
+    let meshes: Vec<Mesh> = meshes.filter(|mesh| !mesh.submeshes.is_empty()).collect();
     Ok(Scene {
-        instances: instances.collect(),
+        instances: (0..).zip(&meshes).map(shown_once).collect(),
         meshes,
         materials,
         textures,

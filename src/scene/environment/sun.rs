@@ -42,30 +42,24 @@ impl Sun {
 /// The sun of a map, if it has one.
 pub(super) fn find(level: &Level) -> Option<Sun> {
     let width = level.width as usize;
-    let sizes: Vec<f64> = (0..level.height)
-        .map(|row| level.solid_angle(row))
-        .collect();
+    let sizes = (0..level.height).map(|row| level.solid_angle(row));
+    let sizes: Vec<f64> = sizes.collect();
     let bright: Vec<f64> = level.texels.iter().map(|t| luminance(*t)).collect();
-    let all: f64 = bright
-        .iter()
-        .enumerate()
-        .map(|(i, l)| l * sizes[i / width])
-        .sum();
+    let weighted = |(i, l): (usize, &f64)| l * sizes[i / width];
+    let all: f64 = bright.iter().enumerate().map(weighted).sum();
     let limit = TIMES_MEAN * all / (4.0 * std::f64::consts::PI);
-    let (brightest, most) = bright
-        .iter()
-        .enumerate()
-        .max_by(|a, b| a.1.total_cmp(b.1))?;
+    let numbered = bright.iter().enumerate();
+    let (brightest, most) = numbered.max_by(|a, b| a.1.total_cmp(b.1))?;
     if *most <= limit {
         return None;
     }
     let to = |i: usize| {
         let place = |at: usize, of: u32| (at as f32 + 0.5) / of as f32;
-        direction(
+        let (x, y) = (
             place(i % width, level.width),
             place(i / width, level.height),
-        )
-        .as_dvec3()
+        );
+        direction(x, y).as_dvec3()
     };
     let axis = to(brightest);
     let cosine = |degrees: f64| degrees.to_radians().cos();
@@ -81,10 +75,9 @@ pub(super) fn find(level: &Level) -> Option<Sun> {
             size_around += size;
         }
     }
-    let surroundings = if size_around > 0.0 {
-        around / size_around
-    } else {
-        DVec3::ZERO
+    let surroundings = match size_around > 0.0 {
+        true => around / size_around,
+        false => DVec3::ZERO,
     };
     let (mut irradiance, mut middle) = (DVec3::ZERO, DVec3::ZERO);
     for i in texels.iter().map(|i| *i as usize) {

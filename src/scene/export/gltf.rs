@@ -33,28 +33,12 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
         meshes.push(writer.mesh(mesh));
     }
     let (movers, animations) = motion::movers(&mut writer, scene);
-    for instance in &scene.instances {
-        let Some(mesh) = written[instance.mesh as usize] else {
-            continue;
-        };
-        let matrix = instance.transform.to_cols_array();
-        let node = json!({ "name": instance.name, "mesh": mesh, "matrix": matrix });
-        writer.below(
-            instance
-                .mover
-                .and_then(|m| movers.get(m as usize).copied().flatten()),
-            node,
-        );
-    }
-    let lights = lights(scene, &mut writer);
+    let lights = place(&mut writer, scene, &movers, &written);
     let of_lights = LIGHTS.into_iter().zip(&lights);
     let of_lights = of_lights.filter(|(_, list)| !list.is_empty());
     let of_lights: Map<String, Value> = of_lights
         .map(|(name, list)| (name.into(), json!({ "lights": list })))
         .collect();
-    for (i, (name, camera)) in scene.cameras.iter().enumerate() {
-        writer.below(None, camera_node(name, i, camera));
-    }
     let mut textures = Textures::default();
     let colored = scene.meshes.iter().any(Mesh::has_colors);
     let mut root = json!({
@@ -79,6 +63,30 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
         root.retain(|_, value| value.as_array().is_none_or(|array| !array.is_empty()));
     }
     save(root, writer.bytes, path, binary)
+}
+
+/// Adds nodes of instances, lights and cameras, and returns the lights by extension. `meshes` are
+/// the numbers of the written ones.
+fn place(
+    writer: &mut Writer,
+    scene: &Scene,
+    movers: &[Option<usize>],
+    meshes: &[Option<usize>],
+) -> [Vec<Value>; 2] {
+    for instance in &scene.instances {
+        let Some(mesh) = meshes[instance.mesh as usize] else {
+            continue;
+        };
+        let matrix = instance.transform.to_cols_array();
+        let node = json!({ "name": instance.name, "mesh": mesh, "matrix": matrix });
+        let mover = instance.mover.and_then(|m| movers.get(m as usize));
+        writer.below(mover.copied().flatten(), node);
+    }
+    let lights = lights(scene, writer);
+    for (i, (name, camera)) in scene.cameras.iter().enumerate() {
+        writer.below(None, camera_node(name, i, camera));
+    }
+    lights
 }
 
 fn save(mut root: Value, bytes: Vec<u8>, path: &Path, binary: bool) -> Result<(), SceneError> {

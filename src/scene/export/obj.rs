@@ -127,43 +127,27 @@ fn write_material(
         }
     }
     if let Some((i, image)) = texture(material.metallic_roughness_texture) {
-        let roughness = save(
-            format!("{i}_roughness.png"),
-            images::grey_png(image, 1, path)?,
-        )?;
-        let metallic = save(
-            format!("{i}_metallic.png"),
-            images::grey_png(image, 2, path)?,
-        )?;
+        let grey = |channel| images::grey_png(image, channel, path);
+        let roughness = save(format!("{i}_roughness.png"), grey(1)?)?;
+        let metallic = save(format!("{i}_metallic.png"), grey(2)?)?;
         maps.push(format!("map_Pr {roughness}\nmap_Pm {metallic}"));
     }
     if let Some((i, image)) = texture(material.normal_texture) {
         let entry = save(format!("{i}_normal.png"), images::rgba_png(image, path)?)?;
-        maps.push(format!(
-            "norm {entry}\nnormal_scale {}",
-            material.normal_scale
-        ));
+        let scale = material.normal_scale;
+        maps.push(format!("norm {entry}\nnormal_scale {scale}"));
     }
-    if let Some((i, image)) =
-        texture(material.emission_texture).filter(|_| material.emission != Vec3::ZERO)
-    {
+    let shines = material.emission != Vec3::ZERO;
+    if let Some((i, image)) = texture(material.emission_texture).filter(|_| shines) {
         let entry = save(format!("{i}_emission.png"), images::rgba_png(image, path)?)?;
         maps.push(format!("map_Ke {entry}"));
     }
     let ([r, g, b, a], e) = (material.base_color.to_array(), material.emission);
     // `two_sided`, `alpha_cutoff`, `ior` and `specular` are extensions of conelab; other programs
     // skip unknown keys.
-    let text = format!(
-        "newmtl {name}\nKd {r} {g} {b}\nd {a}\nKs 0 0 0\nPr {}\nPm {}\nKe {} {} {}\ntwo_sided {}\nalpha_cutoff {}\n{}\n\n",
-        material.roughness,
-        material.metallic,
-        e.x,
-        e.y,
-        e.z,
-        u8::from(material.two_sided),
-        material.alpha_cutoff,
-        maps.join("\n")
-    );
-    out.push_str(&text);
+    let (rough, metal, cutoff) = (material.roughness, material.metallic, material.alpha_cutoff);
+    let ([x, y, z], sides, maps) = (e.to_array(), u8::from(material.two_sided), maps.join("\n"));
+    *out += &format!("newmtl {name}\nKd {r} {g} {b}\nd {a}\nKs 0 0 0\nPr {rough}\nPm {metal}\n");
+    *out += &format!("Ke {x} {y} {z}\ntwo_sided {sides}\nalpha_cutoff {cutoff}\n{maps}\n\n");
     Ok(())
 }

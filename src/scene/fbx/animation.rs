@@ -33,23 +33,16 @@ impl Motion {
         clip: Option<&str>,
         warnings: &mut Warnings,
     ) -> Result<Motion, String> {
-        let names: Vec<String> = file
-            .anim_stacks
-            .into_iter()
-            .map(|stack| shown(&stack.element.name))
-            .collect();
-        let chosen = clip
-            .map(|clip| clips::number(clip, &names))
-            .transpose()?
-            .unwrap_or(0);
+        let stacks = file.anim_stacks.into_iter();
+        let names: Vec<String> = stacks.map(|stack| shown(&stack.element.name)).collect();
+        let chosen = clip.map(|clip| clips::number(clip, &names));
+        let chosen = chosen.transpose()?.unwrap_or(0);
         let Some(first) = file.anim_stacks.into_iter().nth(chosen) else {
             return Ok(Motion::default());
         };
-        names
-            .iter()
-            .enumerate()
-            .filter(|(i, _)| *i != chosen)
-            .for_each(|(_, name)| warnings.add(clips::LEFT_OUT, name));
+        for (_, name) in names.iter().enumerate().filter(|(i, _)| *i != chosen) {
+            warnings.add(clips::LEFT_OUT, name);
+        }
         let (temp_allocator, result_allocator) = (memory(bytes), memory(bytes));
         let options = BakeOpts {
             temp_allocator,
@@ -58,16 +51,12 @@ impl Motion {
             ..BakeOpts::default()
         };
         let baked = bake_anim(file, &first.anim, options).map_err(|error| {
-            format!(
-                "its animation cannot be read ({})",
-                error.description.to_lowercase()
-            )
+            let why = error.description.to_lowercase();
+            format!("its animation cannot be read ({why})")
         })?;
-        let moving = baked
-            .nodes
-            .iter()
-            .filter(|n| !(n.constant_translation && n.constant_rotation && n.constant_scale));
-        let moving: Vec<&BakedNode> = moving.collect();
+        let moves =
+            |n: &&BakedNode| !(n.constant_translation && n.constant_rotation && n.constant_scale);
+        let moving: Vec<&BakedNode> = baked.nodes.iter().filter(moves).collect();
         let weights = weights(&baked)?;
         // All tracks share the longest period.
         let last = moving.iter().map(|n| last_key(n)).fold(0.0, f64::max) as f32;
@@ -81,12 +70,9 @@ impl Motion {
             let Some(node) = file.nodes.as_ref().get(baked.typed_id as usize) else {
                 continue;
             };
-            let track = track(node, baked, period);
-            let track = track.ok_or_else(|| {
-                format!(
-                    "node '{}' has a motion that is not finite. Export it again",
-                    shown(&node.element.name)
-                )
+            let track = track(node, baked, period).ok_or_else(|| {
+                let name = shown(&node.element.name);
+                format!("node '{name}' has a motion that is not finite. Export it again")
             })?;
             tracks.insert(baked.typed_id, Arc::new(track));
         }

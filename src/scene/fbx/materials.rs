@@ -4,12 +4,12 @@ use glam::{DVec3, Vec3};
 use ufbx::{Material as From, MaterialMap, ShaderType};
 
 use super::numbers::{color, vector};
-use super::pictures::{Laid, Pictures, UvSource};
+use super::pictures::{Pictures, UvSource};
 use super::unread;
 use crate::scene::Material;
 use crate::scene::coordinates::{References, UvSources};
 use crate::scene::obj::shown;
-use crate::scene::phong::{Asked, Maps, Parts, Picture, Words, opacity};
+use crate::scene::phong::{Asked, Maps, Parts, Picture, Words};
 use crate::scene::warnings::Warnings;
 
 pub(super) const WORDS: Words = Words {
@@ -45,49 +45,32 @@ fn convert(from: &From, pictures: &mut Pictures, warnings: &mut Warnings) -> Rea
     let mut references = References::default();
     let mut laid = |map: &MaterialMap, warnings: &mut Warnings| {
         let texture = map.texture.as_ref().filter(|_| map.texture_enabled)?;
-        let Laid {
-            image,
-            source,
-            lookup,
-            is_missing,
-        } = pictures.find(texture, warnings)?;
-        Some((references.add(source, lookup), image, is_missing))
+        let laid = pictures.find(texture, warnings)?;
+        let number = references.add(laid.source, laid.lookup);
+        Some((number, laid.image, laid.is_missing))
     };
-    let alpha_map = if is_phong {
-        &fbx.transparency_color
-    } else {
-        &pbr.opacity
-    };
+    let alphas = [&pbr.opacity, &fbx.transparency_color];
+    let alpha_map = alphas[usize::from(is_phong)];
     let [color_map, alpha] = [&pbr.base_color, alpha_map].map(|map| laid(map, warnings));
     // A Phong exponent is not a roughness.
-    let roughness = if is_phong {
-        None
-    } else {
-        laid(&pbr.roughness, warnings)
-    };
+    let own = Some(&pbr.roughness).filter(|_| !is_phong);
+    let roughness = own.and_then(|map| laid(map, warnings));
     let [metallic, emission] = [&pbr.metalness, &pbr.emission_color].map(|map| laid(map, warnings));
     let normal = laid(&fbx.normal_map, warnings).map(|found| (found, false));
     let normal = normal.or_else(|| {
-        laid(&pbr.normal_map, warnings)
-            .or(laid(&fbx.bump, warnings))
-            .map(|f| (f, true))
+        let bump = laid(&pbr.normal_map, warnings).or(laid(&fbx.bump, warnings));
+        bump.map(|f| (f, true))
     });
-    let normal = normal.filter(|((_, image, is_missing), is_bump)| {
-        // Most bump maps hold heights, so a placeholder with normals would be wrong.
-        if *is_missing && *is_bump {
-            warnings.add(
-                "bump maps that are not there are left out",
-                shown(&image.name()),
-            );
+    // Most bump maps hold heights, so a placeholder with normals would be wrong.
+    let normal = match normal {
+        Some(((_, image, true), true)) => {
+            let what = "bump maps that are not there are left out";
+            warnings.add(what, shown(&image.name()));
+            None
         }
-        !(*is_missing && *is_bump)
-    });
-    let (uv, more) = references.sources();
-    if more {
-        let what = "textures of one material have more than two kinds of coordinates (sets or transforms); the rest \
-                    takes the commonest";
-        warnings.add(what, &name);
-    }
+        other => other,
+    };
+    let uv = references.sources(&name, warnings);
     let picture = |found: Option<(usize, _, bool)>| {
         found.map(|(number, image, _)| Picture {
             image,
@@ -105,33 +88,17 @@ fn convert(from: &From, pictures: &mut Pictures, warnings: &mut Warnings) -> Rea
         emission: picture(emission),
     };
     let mut parts = parts(from, is_phong, maps, name);
-    let has_alpha = parts.maps.alpha.is_some();
-    parts.opacity = opacity(
-        parts.opacity,
-        has_alpha,
-        parts.cutoff(),
-        &parts.name,
-        warnings,
-    );
-    let asked = parts.build(pictures.requests);
-    Read {
-        asked: Asked {
-            material: reflective(from, is_phong, asked.material),
-            ..asked
-        },
-        uv,
-    }
+    parts.opacity = parts.opacity(&parts.name, warnings);
+    let mut asked = parts.build(pictures.requests);
+    asked.material = reflective(from, is_phong, asked.material);
+    Read { asked, uv }
 }
 
 /// The factors. A texture replaces the value and is multiplied by the factor.
 fn parts(from: &From, is_phong: bool, maps: Maps, name: String) -> Parts {
     let (pbr, fbx) = (&from.pbr, &from.fbx);
     let tinted = |map: &MaterialMap, factor: &MaterialMap, has_map: bool, default: Vec3| {
-        let value = if map.has_value {
-            color(rgb(map)).unwrap_or(default)
-        } else {
-            default
-        };
+        let value = color(rgb(map)).filter(|_| map.has_value).unwrap_or(default);
         let factor = number(factor).unwrap_or(1.0).max(0.0);
         if has_map {
             Vec3::splat(factor)
@@ -139,18 +106,10 @@ fn parts(from: &From, is_phong: bool, maps: Maps, name: String) -> Parts {
             value * factor
         }
     };
-    let base_color = tinted(
-        &pbr.base_color,
-        &pbr.base_factor,
-        maps.color.is_some(),
-        Vec3::splat(0.8),
-    );
-    let emission = tinted(
-        &pbr.emission_color,
-        &pbr.emission_factor,
-        maps.emission.is_some(),
-        Vec3::ZERO,
-    );
+    let (has_color, grey) = (maps.color.is_some(), Vec3::splat(0.8));
+    let base_color = tinted(&pbr.base_color, &pbr.base_factor, has_color, grey);
+    let (map, factor) = (&pbr.emission_color, &pbr.emission_factor);
+    let emission = tinted(map, factor, maps.emission.is_some(), Vec3::ZERO);
     let opacity = match () {
         () if maps.alpha.is_some() => None,
         () if is_phong => opacity_of_phong(from),
@@ -159,27 +118,19 @@ fn parts(from: &From, is_phong: bool, maps: Maps, name: String) -> Parts {
             .map(|v| v.element_sum() / 3.0),
     };
     let gloss = number(&pbr.glossiness).map(|gloss| 1.0 - gloss);
-    let roughness = |has_map: bool| {
-        if has_map {
-            Some(1.0)
-        } else {
-            number(&pbr.roughness).or(gloss)
-        }
+    let roughness = match maps.roughness {
+        _ if is_phong => None,
+        Some(_) => Some(1.0),
+        None => number(&pbr.roughness).or(gloss),
     };
     Parts {
         base_color: base_color.min(Vec3::ONE),
-        emission: if emission.is_finite() {
-            emission
-        } else {
-            Vec3::ZERO
-        },
+        emission: Some(emission)
+            .filter(|e| e.is_finite())
+            .unwrap_or(Vec3::ZERO),
         opacity: opacity.unwrap_or(1.0),
         cutoff: None,
-        roughness: if is_phong {
-            None
-        } else {
-            roughness(maps.roughness.is_some())
-        },
+        roughness,
         exponent: number(&fbx.specular_exponent)
             .filter(|_| from.shader_type != ShaderType::FbxLambert),
         metallic: if maps.metallic.is_some() {

@@ -39,73 +39,46 @@ pub(super) fn read(
     let mut room = MANY + bytes;
     let mut used = false;
     let (mut meshes, mut rigs) = (Vec::new(), Rigs::new());
-    for Wanted {
-        mesh: number,
-        materials: list,
-    } in wanted
-    {
+    for item in wanted {
         if progress.stopped() {
             return Err(String::new());
         }
-        let Some(from) = file.meshes.as_ref().get(*number as usize) else {
-            return Err(damaged());
-        };
+        let from = file.meshes.as_ref().get(item.mesh as usize);
+        let from = from.ok_or_else(damaged)?;
         let name = name(from);
-        room = room
-            .checked_sub(from.num_triangles.saturating_mul(3))
-            .ok_or_else(|| {
-                format!(
-                    "mesh '{name}': with it there are many more corners than the file holds bytes"
-                )
-            })?;
-        let of_part = |part: usize| list.get(part).map_or(materials.len(), |m| *m as usize);
-        let (skin, blends) = (skins::of(from), blends::any(from));
-        let is_rigged = skin.is_some() || blends;
+        let left = room.checked_sub(from.num_triangles.saturating_mul(3));
+        room = left.ok_or_else(|| {
+            let why = "with it there are many more corners than the file holds bytes";
+            format!("mesh '{name}': {why}")
+        })?;
+        let skin = skins::of(from);
+        let is_rigged = skin.is_some() || blends::any(from);
         if is_rigged {
             let mut rig = Rig {
                 morphs: blends::morphs(from, &mut room)?,
                 ..Rig::default()
             };
-            skin.into_iter()
-                .for_each(|skin| skins::add(&mut rig, from, skin, warnings));
+            if let Some(skin) = skin {
+                skins::add(&mut rig, from, skin, warnings);
+            }
             rigs.insert(meshes.len(), rig);
         }
-        let (corners, sources) = (Vec::new(), Vec::new());
         let mut reader = Reader {
             from,
             is_rigged,
-            corners,
-            sources,
+            corners: Vec::new(),
+            sources: Vec::new(),
             triangles: vec![0; from.max_face_triangles * 3],
         };
-        let mut submeshes = Vec::new();
-        for (part, faces) in from.material_parts.iter().enumerate() {
-            let material = of_part(part);
-            let read = materials.get(material);
-            if read.is_some_and(|read| read.asked.material.is_left_out())
-                || faces.num_triangles == 0
-            {
-                continue;
-            }
-            used |= read.is_none();
-            let first = reader.corners.len();
-            reader.add(&faces.face_indices, read).ok_or_else(damaged)?;
-            let index_count = (reader.corners.len() - first) as u32;
-            submeshes.push(Submesh {
-                first_index: first as u32,
-                index_count,
-                material: material as u32,
-            });
-        }
+        let submeshes = reader.parts(item, materials, &mut used)?;
         let (vertices, indices, sources) = weld_sources(&reader.corners, &reader.sources);
-        let mesh = Mesh {
-            name,
-            vertices,
-            indices,
-            submeshes,
-        };
         meshes.push(RawMesh {
-            mesh,
+            mesh: Mesh {
+                name,
+                vertices,
+                indices,
+                submeshes,
+            },
             sources,
             has_normals: true,
             has_tangents: false,
@@ -147,6 +120,34 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
+    /// Adds all faces; `used` becomes true if a part has no material.
+    fn parts(
+        &mut self,
+        item: &Wanted,
+        materials: &[Read],
+        used: &mut bool,
+    ) -> Result<Vec<Submesh>, String> {
+        let mut submeshes = Vec::new();
+        for (part, faces) in self.from.material_parts.iter().enumerate() {
+            let material = item.materials.get(part);
+            let material = material.map_or(materials.len(), |m| *m as usize);
+            let read = materials.get(material);
+            let left_out = read.is_some_and(|read| read.asked.material.is_left_out());
+            if left_out || faces.num_triangles == 0 {
+                continue;
+            }
+            *used |= read.is_none();
+            let first = self.corners.len();
+            self.add(&faces.face_indices, read).ok_or_else(damaged)?;
+            submeshes.push(Submesh {
+                first_index: first as u32,
+                index_count: (self.corners.len() - first) as u32,
+                material: material as u32,
+            });
+        }
+        Ok(submeshes)
+    }
+
     /// Adds faces of one material; `None` if a face is invalid.
     fn add(&mut self, faces: &[u32], material: Option<&Read>) -> Option<()> {
         let no_sources = Default::default();

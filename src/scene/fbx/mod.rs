@@ -20,15 +20,14 @@ mod unread;
 
 use std::path::Path;
 
-use crate::files::read_input;
-
+use super::error::read_model;
 use super::mesh::prepare_rigged;
 use super::motion::{Posing, Rig, Rigs, attach};
 use super::phong::{Finder, decide, grey};
 use super::progress::Progress;
 use super::texture::Requests;
 use super::warnings::Warnings;
-use super::{Scene, SceneError};
+use super::{Mesh, Scene, SceneError};
 use animation::Motion;
 use pictures::Pictures;
 
@@ -43,18 +42,11 @@ pub(super) fn load(
     clip: Option<&str>,
     progress: Progress,
 ) -> Result<Scene, SceneError> {
-    let fail = |message: String| SceneError::Model {
-        path: path.into(),
-        message,
-    };
+    let fail = SceneError::model(path);
     progress.step("reading", 0.0)?;
-    let bytes = read_input(path, MAX_BYTES).map_err(|source| SceneError::Read {
-        path: path.into(),
-        hint: "Check the path and its permissions".into(),
-        source,
-    })?;
+    let bytes = read_model(path, MAX_BYTES)?;
     let length = bytes.len();
-    let file = file::read(&bytes, progress).map_err(fail)?;
+    let file = file::read(&bytes, progress).map_err(&fail)?;
     drop(bytes);
     let name = path.display().to_string();
     let mut warnings = Warnings::default();
@@ -62,21 +54,17 @@ pub(super) fn load(
 
     progress.step("materials", 0.3)?;
     let mut requests = Requests::default();
-    let mut pictures = Pictures::new(
-        &name,
-        Finder::new(path.parent().unwrap_or(Path::new(""))),
-        &mut requests,
-    );
+    let finder = Finder::new(path.parent().unwrap_or(Path::new("")));
+    let mut pictures = Pictures::new(&name, finder, &mut requests);
     let mut materials = materials::read(&file, &mut pictures, &mut warnings);
     progress.step("nodes", 0.4)?;
-    let motion = Motion::read(&file, length, clip, &mut warnings).map_err(fail)?;
-    let placed = nodes::place(&file, &motion, &mut warnings).map_err(fail)?;
+    let motion = Motion::read(&file, length, clip, &mut warnings).map_err(&fail)?;
     let nodes::Placed {
         mut scene,
         wanted,
         frames,
         rigged,
-    } = placed;
+    } = nodes::place(&file, &motion, &mut warnings).map_err(&fail)?;
     progress.step("textures", 0.5)?;
     let (mut textures, texture_warnings) = requests.load(progress)?;
     let asked = materials.iter_mut().map(|read| &mut read.asked).collect();
@@ -86,41 +74,17 @@ pub(super) fn load(
 
     progress.step("meshes", 0.7)?;
     let (raw, read_rigs, used) =
-        meshes::read(&file, &wanted, &materials, length, &mut warnings, progress).map_err(fail)?;
+        meshes::read(&file, &wanted, &materials, length, &mut warnings, progress).map_err(&fail)?;
     let has_colors = raw.iter().any(|raw| raw.mesh.has_colors());
-    scene.materials = materials
-        .into_iter()
-        .map(|read| read.asked.material)
-        .collect();
+    let materials = materials.into_iter();
+    scene.materials = materials.map(|read| read.asked.material).collect();
     if used {
         scene.materials.push(grey(has_colors));
     }
-    let (prepared, dropped) = prepare_rigged(raw, &scene.materials, progress).map_err(fail)?;
-    let mut rigs = Rigs::new();
-    for (i, (mesh, sources)) in prepared.into_iter().enumerate() {
-        if let Some(read) = read_rigs.get(&i) {
-            let mut rig = Rig::default();
-            rig.append(0, Some(read), &sources, false);
-            rigs.insert(i, rig);
-        }
-        scene.meshes.push(mesh);
-    }
-    let mut posings = Vec::new();
-    for (instance, mesh) in rigged {
-        let joints = skins::of(mesh)
-            .map(|skin| skins::joints(skin, &frames, &mut warnings))
-            .unwrap_or_default();
-        let weights = blends::weights(mesh, &motion).ok_or_else(|| {
-            fail("a blend shape has weights that are not finite. Export it again".into())
-        })?;
-        posings.push(Posing {
-            instance,
-            joints,
-            weights,
-            period: motion.period,
-        });
-    }
-    attach(&mut scene, posings, &rigs, meshes::MANY + length).map_err(fail)?;
+    let (prepared, dropped) = prepare_rigged(raw, &scene.materials, progress).map_err(&fail)?;
+    let rigs = welded(prepared, &read_rigs, &mut scene.meshes);
+    let posings = posings(rigged, &frames, &motion, &mut warnings).map_err(&fail)?;
+    attach(&mut scene, posings, &rigs, meshes::MANY + length).map_err(&fail)?;
     scene.warnings = warnings.lines(&name);
     scene.warnings.extend(dropped.warning(&name));
     scene.warnings.extend(texture_warnings);
@@ -132,4 +96,42 @@ pub(super) fn load(
             .is_some_and(|mesh| !mesh.submeshes.is_empty())
     });
     Ok(scene)
+}
+
+/// Adds welded meshes, and returns their rigs.
+fn welded(prepared: Vec<(Mesh, Vec<u32>)>, read: &Rigs, meshes: &mut Vec<Mesh>) -> Rigs {
+    let mut rigs = Rigs::new();
+    for (i, (mesh, sources)) in prepared.into_iter().enumerate() {
+        if let Some(read) = read.get(&i) {
+            let mut rig = Rig::default();
+            rig.append(0, Some(read), &sources, false);
+            rigs.insert(i, rig);
+        }
+        meshes.push(mesh);
+    }
+    rigs
+}
+
+/// The poses of instances that deform.
+fn posings(
+    rigged: Vec<(usize, &ufbx::Mesh)>,
+    frames: &skins::Frames,
+    motion: &Motion,
+    warnings: &mut Warnings,
+) -> Result<Vec<Posing>, String> {
+    let mut posings = Vec::new();
+    for (instance, mesh) in rigged {
+        let joints = skins::of(mesh)
+            .map(|skin| skins::joints(skin, frames, warnings))
+            .unwrap_or_default();
+        let weights = blends::weights(mesh, motion)
+            .ok_or("a blend shape has weights that are not finite. Export it again")?;
+        posings.push(Posing {
+            instance,
+            joints,
+            weights,
+            period: motion.period,
+        });
+    }
+    Ok(posings)
 }

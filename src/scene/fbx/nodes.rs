@@ -12,7 +12,7 @@ use super::{blends, lights};
 use crate::scene::defaults::least_reach;
 use crate::scene::obj::shown;
 use crate::scene::warnings::Warnings;
-use crate::scene::{Camera, Instance, Mover, Scene};
+use crate::scene::{Camera, Instance, Scene};
 
 /// A node to visit with its parent's frame.
 struct Visit<'a> {
@@ -43,70 +43,38 @@ pub(super) fn place<'a>(
 ) -> Result<Placed<'a>, String> {
     let (mut placed, mut frames, mut rigged) = (Scene::default(), Frames::new(), Vec::new());
     let mut wanted = IndexSet::new();
-    let root = file.root_node.as_ref();
     let mut stack = vec![Visit {
-        node: root,
+        node: file.root_node.as_ref(),
         mover: None,
         above: DAffine3::IDENTITY,
         visible: true,
     }];
-    while let Some(Visit {
-        node,
-        mut mover,
-        above,
-        visible,
-    }) = stack.pop()
-    {
-        let visible = is_visible(node, visible);
+    while let Some(visit) = stack.pop() {
+        let (node, mut mover, above) = (visit.node, visit.mover, visit.above);
+        let visible = is_visible(node, visit.visible);
         let name = name(node);
         if !visible && (node.mesh.is_some() || node.light.is_some()) {
             warnings.add("invisible nodes are left out", &name);
         }
         let mut local = above * frame(&node.local_transform);
         if let Some(track) = motion.of(node) {
-            placed.movers.push(Mover {
-                parent: mover,
-                placed: placement(&above),
-                track,
-            });
-            (mover, local) = (Some(placed.movers.len() as u32 - 1), DAffine3::IDENTITY);
+            mover = Some(placed.add_mover(mover, placement(&above), track));
+            local = DAffine3::IDENTITY;
         }
         frames.insert(node.element.typed_id, (mover, placement(&local)));
         let here = local * affine(&node.geometry_to_node);
         if let Some(mesh) = node.mesh.as_ref().filter(|_| visible) {
-            let materials = node
-                .materials
-                .into_iter()
-                .map(|material| material.element.typed_id)
-                .collect();
-            let (mesh, _) = wanted.insert_full(Wanted {
-                mesh: mesh.element.typed_id,
-                materials,
-            });
-            let mesh_of = node.mesh.as_ref().map(|mesh| mesh.as_ref());
-            let moves = mesh_of.filter(|mesh| skins::of(mesh).is_some() || blends::any(mesh));
-            rigged.extend(moves.map(|mesh| (placed.instances.len(), mesh)));
-            placed
-                .instances
-                .push(instance(node, mesh as u32, &name, (mover, here))?);
+            let wanted = (&mut wanted, &mut rigged);
+            add_instance(&mut placed, wanted, node, mesh, &name, (mover, here))?;
         }
-        add_light_and_camera(
-            &mut placed,
-            file,
-            node,
-            (mover, here),
-            &name,
-            visible,
-            warnings,
-        );
-        let children = node.children.as_ref();
+        let frame = (mover, here);
+        add_light_and_camera(&mut placed, file, node, frame, &name, visible, warnings);
+        let mut children = node.children.as_ref();
         // The children of a LOD group are alternatives; the first is the finest.
-        let children = if node.attrib_type == ElementType::LodGroup && children.len() > 1 {
+        if node.attrib_type == ElementType::LodGroup && children.len() > 1 {
             warnings.add("of levels of detail the first is shown", &name);
-            children.get(..1).unwrap_or_default()
-        } else {
-            children
-        };
+            children = children.get(..1).unwrap_or_default();
+        }
         let below = |child: &'a ufbx::Ref<Node>| Visit {
             node: child.as_ref(),
             mover,
@@ -116,10 +84,8 @@ pub(super) fn place<'a>(
         stack.extend(children.iter().rev().map(below));
     }
     // The author's active camera comes first.
-    if let Some(own) = placed
-        .cameras
-        .get_index_of(file.settings.default_camera.as_ref())
-    {
+    let active = file.settings.default_camera.as_ref();
+    if let Some(own) = placed.cameras.get_index_of(active) {
         placed.cameras.move_index(own, 0);
     }
     Ok(Placed {
@@ -128,6 +94,27 @@ pub(super) fn place<'a>(
         frames,
         rigged,
     })
+}
+
+fn add_instance<'a>(
+    placed: &mut Scene,
+    (wanted, rigged): (&mut IndexSet<Wanted>, &mut Vec<(usize, &'a Mesh)>),
+    node: &Node,
+    mesh: &'a Mesh,
+    name: &str,
+    frame: (Option<u32>, DAffine3),
+) -> Result<(), String> {
+    let materials = node.materials.into_iter();
+    let (number, _) = wanted.insert_full(Wanted {
+        mesh: mesh.element.typed_id,
+        materials: materials.map(|m| m.element.typed_id).collect(),
+    });
+    if skins::of(mesh).is_some() || blends::any(mesh) {
+        rigged.push((placed.instances.len(), mesh));
+    }
+    let instance = instance(node, number as u32, name, frame)?;
+    placed.instances.push(instance);
+    Ok(())
 }
 
 /// Adds the light and the camera of a node.

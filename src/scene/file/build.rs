@@ -8,7 +8,7 @@ use super::parts::{MAX_PLACES, Part, Repeat};
 use crate::scene::mesh::{Dropped, RawMesh, prepare_all};
 use crate::scene::progress::Progress;
 use crate::scene::shapes::*;
-use crate::scene::{Instance, MAX_COORDINATE, Material, Mover, Scene};
+use crate::scene::{Instance, MAX_COORDINATE, Material, Scene};
 
 /// Parts and positions visited for all meshes.
 const MAX_PARTS: u32 = 1 << 18;
@@ -78,20 +78,15 @@ pub(super) fn build(file: &SceneFile, progress: Progress) -> Result<Scene, Probl
 fn place_all(file: &SceneFile, scene: &mut Scene) -> Result<(), Problem> {
     // Meshes without a placement are instantiated once, as built.
     let mut entries: Vec<(u32, &str)> = (0..).zip(file.meshes.keys().map(String::as_str)).collect();
-    entries.retain(|(_, name)| {
-        !file
-            .instances
-            .iter()
-            .any(|e| e.meshes.iter().any(|m| m == name))
-    });
-    scene
-        .instances
-        .extend(entries.into_iter().map(|(mesh, name)| Instance {
-            name: name.into(),
-            mesh,
-            transform: Mat4::IDENTITY,
-            mover: None,
-        }));
+    let placed = file.instances.iter().flat_map(|e| &e.meshes);
+    entries.retain(|(_, name)| !placed.clone().any(|m| m == name));
+    let as_built = |(mesh, name): (u32, &str)| Instance {
+        name: name.into(),
+        mesh,
+        transform: Mat4::IDENTITY,
+        mover: None,
+    };
+    scene.instances.extend(entries.into_iter().map(as_built));
     for entry in &file.instances {
         let near = entry.meshes.first().map_or("", String::as_str);
         let wrong = |message: String| Problem {
@@ -99,14 +94,8 @@ fn place_all(file: &SceneFile, scene: &mut Scene) -> Result<(), Problem> {
             message,
         };
         let transform = entry.transform.0;
-        let mover = entry.animation.clone().map(|moves| {
-            scene.movers.push(Mover {
-                parent: None,
-                placed: Mat4::IDENTITY,
-                track: moves.0,
-            });
-            scene.movers.len() as u32 - 1
-        });
+        let moves = entry.animation.clone();
+        let mover = moves.map(|moves| scene.add_mover(None, Mat4::IDENTITY, moves.0));
         let places = entry.at.clone().unwrap_or_default().list().map_err(wrong)?;
         if scene.instances.len() + places.len() * entry.meshes.len() > MAX_PLACES as usize {
             return Err(wrong(format!("more than {MAX_PLACES} instances")));
@@ -116,15 +105,13 @@ fn place_all(file: &SceneFile, scene: &mut Scene) -> Result<(), Problem> {
                 let no_mesh = || wrong(format!("no mesh '{name}' is in this file's meshes"));
                 let mesh = file.meshes.get_index_of(name).ok_or_else(no_mesh)? as u32;
                 let shown = entry.name.as_ref().unwrap_or(name);
-                let name = if entry.at.is_some() {
-                    format!("{shown} {}", i + 1)
-                } else {
-                    shown.clone()
+                let name = match entry.at {
+                    Some(_) => format!("{shown} {}", i + 1),
+                    None => shown.clone(),
                 };
-                let moved = if turn == 0.0 {
-                    transform
-                } else {
-                    transform * Mat4::from_rotation_y(turn)
+                let moved = match turn == 0.0 {
+                    true => transform,
+                    false => transform * Mat4::from_rotation_y(turn),
                 };
                 let transform = Mat4 {
                     w_axis: (transform.transform_point3(at)).extend(1.0),

@@ -71,14 +71,8 @@ pub(super) fn add(scene: &mut Scene, mut model: Scene) -> Added {
 /// Adds instances, lights and cameras of a model with the placement and motion of its entry.
 pub(super) fn add_placed(scene: &mut Scene, model: &Scene, entry: &ModelEntry) {
     let frame = entry.transform;
-    let own = entry.motion.clone().map(|track| {
-        scene.movers.push(Mover {
-            parent: None,
-            placed: Mat4::IDENTITY,
-            track,
-        });
-        scene.movers.len() as u32 - 1
-    });
+    let track = entry.motion.clone();
+    let own = track.map(|track| scene.add_mover(None, Mat4::IDENTITY, track));
     let moves = model.instances.iter().any(|i| i.mover.is_some());
     let fits = scene.movers.len() + model.movers.len() <= MAX_MOVERS;
     if moves && !fits {
@@ -110,25 +104,17 @@ pub(super) fn add_placed(scene: &mut Scene, model: &Scene, entry: &ModelEntry) {
         light.color *= entry.lights_scale.unwrap_or(1.0);
         scene.lights.push(light);
     }
-    for (name, mut camera) in model
-        .cameras
-        .iter()
-        .filter(|_| entry.cameras)
-        .map(|(n, c)| (n.clone(), *c))
-    {
+    for (name, camera) in model.cameras.iter().filter(|_| entry.cameras) {
+        let mut camera = *camera;
         camera.eye = frame.transform_point3(camera.eye);
         camera.target = frame.transform_point3(camera.target);
         camera.up = frame.transform_vector3(camera.up).normalize_or(camera.up);
         // The first camera keeps its name; later ones get the model's name as a prefix.
-        let taken = scene.cameras.contains_key(&name);
-        scene.cameras.insert(
-            if taken {
-                format!("{} {name}", model.name)
-            } else {
-                name
-            },
-            camera,
-        );
+        let name = match scene.cameras.contains_key(name) {
+            true => format!("{} {name}", model.name),
+            false => name.clone(),
+        };
+        scene.cameras.insert(name, camera);
     }
 }
 

@@ -7,7 +7,7 @@ use std::collections::HashSet;
 use ::gltf::Document;
 use ::gltf::json::validation::{Checked, Error, Validate};
 use ::gltf::json::{Path, Root};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use super::container::split;
 use super::supported;
@@ -67,6 +67,12 @@ fn check_version(value: &Value) -> Result<(), String> {
     }
 }
 
+/// The items of a list in a document; none if it has no such list.
+fn items<'a>(root: &'a mut Map<String, Value>, list: &str) -> impl Iterator<Item = &'a mut Value> {
+    let list = root.get_mut(list).and_then(Value::as_array_mut);
+    list.into_iter().flatten()
+}
+
 /// Writes out defaults of the format that the crate requires.
 fn write_out(value: &mut Value, warnings: &mut Warnings) {
     whole_numbers(value);
@@ -74,46 +80,25 @@ fn write_out(value: &mut Value, warnings: &mut Warnings) {
         return;
     };
     root.remove("extensionsRequired");
-    let scenes = root
-        .get_mut("scenes")
-        .and_then(Value::as_array_mut)
-        .into_iter()
-        .flatten();
-    for scene in scenes.filter_map(Value::as_object_mut) {
+    let scenes = items(root, "scenes").filter_map(Value::as_object_mut);
+    for scene in scenes {
         scene.entry("nodes").or_insert(json!([]));
     }
-    let animations = root
-        .get_mut("animations")
-        .and_then(Value::as_array_mut)
-        .into_iter()
-        .flatten();
-    for (i, animation) in animations.enumerate() {
+    for (i, animation) in items(root, "animations").enumerate() {
         let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) else {
             continue;
         };
         let before = channels.len();
         channels.retain(|channel| channel.get("target").is_none_or(moves_a_node));
-        if channels.len() < before {
-            for _ in channels.len()..before {
-                warnings.add(
-                    "channels of animations that move no node are left out",
-                    format!("animation {i}"),
-                );
-            }
+        for _ in channels.len()..before {
+            let what = "channels of animations that move no node are left out";
+            warnings.add(what, format!("animation {i}"));
         }
     }
-    let mut images = root
-        .get("images")
-        .and_then(Value::as_array)
-        .map_or(0, Vec::len);
+    let mut images = items(root, "images").count();
     let known = images as u64;
     let mut absent = Vec::new();
-    let textures = root
-        .get_mut("textures")
-        .and_then(Value::as_array_mut)
-        .into_iter()
-        .flatten();
-    for (i, texture) in textures.enumerate() {
+    for (i, texture) in items(root, "textures").enumerate() {
         let exists = |source: &Value| source.as_u64().is_some_and(|source| source < known);
         let Some(texture) = texture.as_object_mut() else {
             continue;
@@ -214,12 +199,8 @@ fn check(root: &Root) -> Result<(), String> {
             let targets = primitive.targets.iter().flatten();
             let moved =
                 targets.flat_map(|t| [t.positions, t.normals, t.tangents].into_iter().flatten());
-            let mut used = primitive
-                .attributes
-                .values()
-                .copied()
-                .chain(primitive.indices)
-                .chain(moved);
+            let used = primitive.attributes.values().copied();
+            let mut used = used.chain(primitive.indices).chain(moved);
             if let Some(index) = used.find(|index| index.value() >= root.accessors.len()) {
                 return Err(format!(
                     "mesh {i} uses accessor {}, which does not exist",
@@ -260,11 +241,9 @@ fn check(root: &Root) -> Result<(), String> {
         }
     }
     for (i, animation) in root.animations.iter().enumerate() {
-        if animation
-            .channels
-            .iter()
-            .any(|channel| channel.sampler.value() >= animation.samplers.len())
-        {
+        let count = animation.samplers.len();
+        let mut channels = animation.channels.iter();
+        if channels.any(|channel| channel.sampler.value() >= count) {
             return Err(format!(
                 "animation {i} has a channel whose sampler does not exist"
             ));

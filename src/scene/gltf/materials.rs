@@ -13,7 +13,7 @@ use super::placing::{Placing, UvSources};
 use crate::scene::progress::Progress;
 use crate::scene::texture::{Recipe, Requests, Source};
 use crate::scene::warnings::Warnings;
-use crate::scene::{Lookups, Material, SceneError};
+use crate::scene::{Material, SceneError};
 
 /// All materials with their coordinate sources; the default material follows if a primitive needs
 /// it.
@@ -131,41 +131,15 @@ fn convert(
     warnings: &mut Warnings,
 ) -> (Material, UvSources) {
     let name = name(from);
-    let Base {
-        color,
-        rough,
-        material,
-    } = match from.pbr_specular_glossiness() {
+    let base = match from.pbr_specular_glossiness() {
         Some(gloss) => specular_glossiness(&gloss, &name, images, means, warnings),
         None => metallic_roughness(from, images),
     };
-    let alpha_cutoff = match from.alpha_mode() {
-        AlphaMode::Opaque => 0.0,
-        // Cutoffs above 1 are equivalent.
-        AlphaMode::Mask => from.alpha_cutoff().unwrap_or(0.5).clamp(0.0, 2.0),
-        AlphaMode::Blend => {
-            match material.base_color.w {
-                a if a < 0.5 => warnings.add(
-                    "materials that blend with an alpha below 0.5 everywhere are left out",
-                    format!("{name}, {a:.2}"),
-                ),
-                _ => warnings.add(
-                    "materials that blend are shown as masks at alpha 0.5",
-                    &name,
-                ),
-            }
-            0.5
-        }
-    };
-    if alpha_cutoff > 1.0 {
-        warnings.add(
-            "materials with an alphaCutoff above 1 cut everything out",
-            &name,
-        );
-    }
+    let (color, material) = (base.color, base.material);
+    let alpha_cutoff = alpha_cutoff(from, material.base_color.w, &name, warnings);
     let mask = (alpha_cutoff > 0.0).then_some((alpha_cutoff * 255.0).round() as u8);
     let lit = !from.unlit();
-    let rough = rough.filter(|_| lit);
+    let rough = base.rough.filter(|_| lit);
     let normal = from.normal_texture().filter(|_| lit);
     let emission = from.emissive_texture().filter(|_| lit);
 
@@ -176,46 +150,23 @@ fn convert(
         normal.as_ref().and_then(|_| placing.add_normal_map(from)),
         emission.as_ref().map(|t| placing.add_texture(t)),
     ];
-    let (uv, more) = placing.sources();
-    if more {
-        let what = "textures of one material have more than two kinds of coordinates (sets or transforms); the rest \
-                    takes the commonest";
-        warnings.add(what, &name);
-    }
-    let [base_color, metallic_roughness, normal_map, emission_map] =
-        references.map(|reference| placing.lookup(reference, &uv));
-
+    let uv = placing.sources(&name, warnings);
     let strength = from.emissive_strength().unwrap_or(1.0).max(0.0);
     let mut ask = |recipe: Recipe| requests.ask(recipe, &name);
+    let tinted = |image, mask| Recipe::Color { image, mask };
+    let bumps = normal
+        .as_ref()
+        .map(|t| images[t.texture().source().index()].clone());
     let mut material = Material {
         emission: finite3(from.emissive_factor().map(|c| c * strength)),
         alpha_cutoff,
         two_sided: from.double_sided(),
         normal_scale: normal.as_ref().map_or(1.0, |n| n.scale()),
-        base_color_texture: color.map(|t| {
-            ask(Recipe::Color {
-                image: source(&t, images),
-                mask,
-            })
-        }),
+        base_color_texture: color.map(|t| ask(tinted(source(&t, images), mask))),
         metallic_roughness_texture: rough.map(|(_, recipe)| ask(recipe)),
-        normal_texture: normal.map(|t| {
-            ask(Recipe::Normal {
-                image: images[t.texture().source().index()].clone(),
-            })
-        }),
-        emission_texture: emission.map(|t| {
-            ask(Recipe::Color {
-                image: source(&t, images),
-                mask: None,
-            })
-        }),
-        lookups: Lookups {
-            base_color,
-            metallic_roughness,
-            normal: normal_map,
-            emission: emission_map,
-        },
+        normal_texture: bumps.map(|image| ask(Recipe::Normal { image })),
+        emission_texture: emission.map(|t| ask(tinted(source(&t, images), None))),
+        lookups: placing.lookups(references, &uv),
         name: name.clone(),
         ..material
     };
@@ -227,6 +178,31 @@ fn convert(
         extensions::unlit(&mut material);
     }
     (material, uv)
+}
+
+/// The alpha below which a material is a hole; 0 without holes.
+fn alpha_cutoff(from: &::gltf::Material, alpha: f32, name: &str, warnings: &mut Warnings) -> f32 {
+    let cutoff = match from.alpha_mode() {
+        AlphaMode::Opaque => 0.0,
+        // Cutoffs above 1 are equivalent.
+        AlphaMode::Mask => from.alpha_cutoff().unwrap_or(0.5).clamp(0.0, 2.0),
+        AlphaMode::Blend => {
+            if alpha < 0.5 {
+                let what = "materials that blend with an alpha below 0.5 everywhere are left out";
+                warnings.add(what, format!("{name}, {alpha:.2}"));
+            } else {
+                warnings.add("materials that blend are shown as masks at alpha 0.5", name);
+            }
+            0.5
+        }
+    };
+    if cutoff > 1.0 {
+        warnings.add(
+            "materials with an alphaCutoff above 1 cut everything out",
+            name,
+        );
+    }
+    cutoff
 }
 
 fn source(info: &texture::Info, images: &[Source]) -> Source {

@@ -10,8 +10,8 @@ use super::accessors;
 use super::buffers::Buffers;
 use super::placing::{UvSource, UvSources};
 use super::skins;
-use crate::scene::mesh::{Dropped, RawMesh, flat, flatten, prepare_rigged, unweld};
-use crate::scene::motion::Rigs;
+use crate::scene::mesh::{Dropped, RawMesh, Rigged, flat, flatten, prepare_rigged, unweld};
+use crate::scene::motion::{Rig, Rigs};
 use crate::scene::progress::Progress;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Material, Mesh, Submesh, Vertex};
@@ -28,36 +28,20 @@ pub(super) fn read(
     warnings: &mut Warnings,
     progress: Progress,
 ) -> Result<(Vec<Mesh>, Rigs, Dropped), String> {
-    let mut primitive_rigs = Vec::new();
-    let mut owners = Vec::new();
-    let mut primitives = Vec::new();
-    let mut meshes = Vec::new();
+    let (mut primitive_rigs, mut owners) = (Vec::new(), Vec::new());
+    let (mut primitives, mut meshes) = (Vec::new(), Vec::new());
     // Primitives may share vertices, so a small file could otherwise fill the memory.
     let mut room = MANY + buffers.len();
     for mesh in document.meshes() {
-        let name = mesh
-            .name()
-            .map_or_else(|| format!("mesh {}", mesh.index()), str::to_owned);
+        let own = || format!("mesh {}", mesh.index());
+        let name = mesh.name().map_or_else(own, str::to_owned);
         for primitive in mesh.primitives() {
             if progress.stopped() {
                 return Err(String::new());
             }
             let default = document.materials().len();
             let material = primitive.material().index().unwrap_or(default);
-            if materials[material].is_left_out() {
-                continue;
-            }
-            let points = matches!(
-                primitive.mode(),
-                Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip
-            );
-            if points || primitive.get(&Semantic::Positions).is_none() {
-                let what = if points {
-                    "points and lines"
-                } else {
-                    "primitives without positions"
-                };
-                warnings.add(format!("{what} are left out"), &name);
+            if materials[material].is_left_out() || !is_surface(&primitive, &name, warnings) {
                 continue;
             }
             let read = read_primitive(&primitive, buffers, &name, material, &uv_sources[material]);
@@ -75,10 +59,8 @@ pub(super) fn read(
             primitives.push(raw);
             owners.push(mesh.index());
             if primitive.get(&Semantic::Colors(1)).is_some() {
-                warnings.add(
-                    "COLOR_1 and further colours of vertices are left out",
-                    &name,
-                );
+                let what = "COLOR_1 and further colours of vertices are left out";
+                warnings.add(what, &name);
             }
         }
         meshes.push(Mesh {
@@ -86,40 +68,13 @@ pub(super) fn read(
             ..Mesh::default()
         });
     }
-    // glTF 2.0, 3.7.2.1: meshes without normals are flat-shaded.
     primitives
         .par_iter_mut()
         .filter(|raw| !raw.has_normals)
-        .for_each(|raw| {
-            match raw.sources.is_empty() {
-                true => flat(&mut raw.mesh),
-                // Triangles that are coplanar in this pose may not be in another one.
-                false => {
-                    unweld(raw);
-                    flatten(&mut raw.mesh.vertices);
-                }
-            }
-            raw.has_normals = true;
-        });
+        .for_each(shade_flat);
     let (prepared, dropped) = prepare_rigged(primitives, materials, progress)?;
-    let mut rigs = Rigs::new();
-    for ((owner, (primitive, sources)), (rig, flat)) in
-        owners.into_iter().zip(prepared).zip(primitive_rigs)
-    {
-        let before = meshes[owner].vertices.len();
-        let sources = if rig.is_some() {
-            sources
-        } else {
-            vec![0; primitive.vertices.len()]
-        };
-        if rig.is_some() || rigs.contains_key(&owner) {
-            let flat = flat && rig.is_some();
-            rigs.entry(owner)
-                .or_default()
-                .append(before, rig.as_ref(), &sources, flat);
-        }
-        append(&mut meshes[owner], primitive)?;
-    }
+    let prepared = owners.into_iter().zip(prepared).zip(primitive_rigs);
+    let rigs = join(&mut meshes, prepared)?;
     Ok((meshes, rigs, dropped))
 }
 
@@ -138,6 +93,77 @@ fn append(mesh: &mut Mesh, primitive: Mesh) -> Result<(), String> {
     Ok(())
 }
 
+/// glTF 2.0, 3.7.2.1: meshes without normals are flat-shaded.
+fn shade_flat(raw: &mut RawMesh) {
+    match raw.sources.is_empty() {
+        true => flat(&mut raw.mesh),
+        // Triangles that are coplanar in this pose may not be in another one.
+        false => {
+            unweld(raw);
+            flatten(&mut raw.mesh.vertices);
+        }
+    }
+    raw.has_normals = true;
+}
+
+/// Whether a primitive has triangles.
+fn is_surface(primitive: &Primitive, name: &str, warnings: &mut Warnings) -> bool {
+    let points = matches!(
+        primitive.mode(),
+        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip
+    );
+    if points || primitive.get(&Semantic::Positions).is_none() {
+        let what = match points {
+            true => "points and lines",
+            false => "primitives without positions",
+        };
+        warnings.add(format!("{what} are left out"), name);
+        return false;
+    }
+    true
+}
+
+/// Adds primitives to their meshes, and returns the rigs of these.
+fn join(
+    meshes: &mut [Mesh],
+    prepared: impl Iterator<Item = ((usize, Rigged), (Option<Rig>, bool))>,
+) -> Result<Rigs, String> {
+    let mut rigs = Rigs::new();
+    for ((owner, (primitive, sources)), (rig, flat)) in prepared {
+        let before = meshes[owner].vertices.len();
+        let sources = match rig {
+            Some(_) => sources,
+            None => vec![0; primitive.vertices.len()],
+        };
+        if rig.is_some() || rigs.contains_key(&owner) {
+            let flat = flat && rig.is_some();
+            let all = rigs.entry(owner).or_default();
+            all.append(before, rig.as_ref(), &sources, flat);
+        }
+        append(&mut meshes[owner], primitive)?;
+    }
+    Ok(rigs)
+}
+
+/// Sets an attribute of all vertices, if there is one.
+fn set<T>(
+    vertices: &mut [Vertex],
+    values: Option<Vec<T>>,
+    what: &str,
+    set: impl Fn(&mut Vertex, T),
+) -> Result<(), String> {
+    let Some(values) = values else { return Ok(()) };
+    let (found, count) = (values.len(), vertices.len());
+    if found != count {
+        return Err(format!("{found} {what} for {count} positions"));
+    }
+    vertices
+        .iter_mut()
+        .zip(values)
+        .for_each(|(v, value)| set(v, value));
+    Ok(())
+}
+
 fn read_primitive(
     primitive: &Primitive,
     buffers: &Buffers,
@@ -149,65 +175,32 @@ fn read_primitive(
         .get(&Semantic::Positions)
         .ok_or("a primitive has no positions")?;
     let positions = accessors::floats::<3>(&positions, buffers)?;
-    let same_count = |found: usize, what: &str| match found == positions.len() {
-        true => Ok(()),
-        false => Err(format!("{found} {what} for {} positions", positions.len())),
+    let vertex = |position| Vertex {
+        position,
+        ..Vertex::default()
     };
-    let mut vertices: Vec<Vertex> = positions
-        .iter()
-        .map(|&position| Vertex {
-            position,
-            ..Vertex::default()
-        })
-        .collect();
-    let normals = primitive
-        .get(&Semantic::Normals)
+    let mut vertices: Vec<Vertex> = positions.into_iter().map(vertex).collect();
+    let normals = primitive.get(&Semantic::Normals);
+    let normals = normals
         .map(|a| accessors::floats::<3>(&a, buffers))
         .transpose()?;
-    let tangents = primitive
-        .get(&Semantic::Tangents)
+    let tangents = primitive.get(&Semantic::Tangents);
+    let tangents = tangents
         .map(|a| accessors::floats::<4>(&a, buffers))
         .transpose()?;
-    if let Some(normals) = &normals {
-        same_count(normals.len(), "normals")?;
-        vertices
-            .iter_mut()
-            .zip(normals)
-            .for_each(|(vertex, n)| vertex.normal = *n);
-    }
-    if let Some(tangents) = &tangents {
-        same_count(tangents.len(), "tangents")?;
-        vertices
-            .iter_mut()
-            .zip(tangents)
-            .for_each(|(vertex, t)| vertex.tangent = *t);
-    }
-    if let Some(uvs) = texture_coordinates(primitive, buffers, &uv_sources.first)? {
-        same_count(uvs.len(), "texture coordinates")?;
-        vertices
-            .iter_mut()
-            .zip(uvs)
-            .for_each(|(vertex, uv)| vertex.uv = uv);
-    }
-    let second = uv_sources
-        .second
-        .as_ref()
-        .map(|source| texture_coordinates(primitive, buffers, source))
-        .transpose()?;
-    if let Some(uvs) = second.flatten() {
-        same_count(uvs.len(), "texture coordinates")?;
-        vertices
-            .iter_mut()
-            .zip(uvs)
-            .for_each(|(vertex, uv)| vertex.uv_second = uv);
-    }
-    if let Some(colors) = colors(primitive, buffers)? {
-        same_count(colors.len(), "colours")?;
-        vertices
-            .iter_mut()
-            .zip(colors)
-            .for_each(|(vertex, color)| vertex.color = color);
-    }
+    let (has_normals, has_tangents) = (normals.is_some(), tangents.is_some());
+    set(&mut vertices, normals, "normals", |v, n| v.normal = n)?;
+    set(&mut vertices, tangents, "tangents", |v, t| v.tangent = t)?;
+    let uvs = texture_coordinates(primitive, buffers, &uv_sources.first)?;
+    set(&mut vertices, uvs, "texture coordinates", |v, uv| v.uv = uv)?;
+    let second = uv_sources.second.as_ref();
+    let second = second.map(|source| texture_coordinates(primitive, buffers, source));
+    let uvs = second.transpose()?.flatten();
+    set(&mut vertices, uvs, "texture coordinates", |v, uv| {
+        v.uv_second = uv
+    })?;
+    let colors = colors(primitive, buffers)?;
+    set(&mut vertices, colors, "colours", |v, color| v.color = color)?;
     let indices = match primitive.indices() {
         Some(accessor) => accessors::indices(&accessor, buffers)?,
         None => (0..vertices.len() as u32).collect(),
@@ -218,18 +211,17 @@ fn read_primitive(
         index_count: indices.len() as u32,
         material: material as u32,
     };
-    let mesh = Mesh {
-        name: name.into(),
-        vertices,
-        indices,
-        submeshes: vec![submesh],
-    };
     // Tangents without normals are ignored.
     Ok(RawMesh {
-        mesh,
+        mesh: Mesh {
+            name: name.into(),
+            vertices,
+            indices,
+            submeshes: vec![submesh],
+        },
         sources: Vec::new(),
-        has_normals: normals.is_some(),
-        has_tangents: normals.is_some() && tangents.is_some(),
+        has_normals,
+        has_tangents: has_normals && has_tangents,
     })
 }
 

@@ -24,8 +24,7 @@ mod supported;
 
 use std::path::Path;
 
-use crate::files::read_input;
-
+use super::error::read_model;
 use super::motion::attach;
 use super::progress::Progress;
 use super::{Scene, SceneError};
@@ -41,22 +40,15 @@ pub(super) fn load(
     clip: Option<&str>,
     progress: Progress,
 ) -> Result<Scene, SceneError> {
-    let fail = |message: String| SceneError::Model {
-        path: path.into(),
-        message,
-    };
+    let fail = SceneError::model(path);
     progress.step("reading", 0.0)?;
-    let bytes = read_input(path, buffers::MAX_BYTES).map_err(|source| SceneError::Read {
-        path: path.into(),
-        hint: "Check the path and its permissions".into(),
-        source,
-    })?;
+    let bytes = read_model(path, buffers::MAX_BYTES)?;
     let Checks {
         document,
         blob,
         unreadable,
         mut warnings,
-    } = document::read(&bytes).map_err(fail)?;
+    } = document::read(&bytes).map_err(&fail)?;
     drop(bytes);
     let folder = path.parent().unwrap_or(Path::new(""));
     let buffers = Buffers::load(&document, blob, unreadable, folder, progress);
@@ -65,40 +57,30 @@ pub(super) fn load(
     let (materials, uv_sources, requests) =
         materials::read(&document, &buffers, folder, &mut warnings, progress)?;
     progress.step("meshes", 0.3)?;
-    let (meshes, rigs, dropped) = meshes::read(
+    let read = meshes::read(
         &document,
         &buffers,
         &materials,
         &uv_sources,
         &mut warnings,
         progress,
-    )
-    .map_err(fail)?;
+    );
+    let (meshes, rigs, dropped) = read.map_err(&fail)?;
     progress.step("nodes", 0.6)?;
-    let tracks = animation::tracks(&document, &buffers, clip, &mut warnings).map_err(fail)?;
-    let placed = nodes::place(&document, &buffers, &tracks, &rigs, &mut warnings).map_err(fail)?;
-    let nodes::Placed {
-        mut scene,
-        frames,
-        deforming,
-        ..
-    } = placed;
+    let tracks = animation::tracks(&document, &buffers, clip, &mut warnings).map_err(&fail)?;
+    let placed = nodes::place(&document, &buffers, &tracks, &rigs, &mut warnings).map_err(&fail)?;
+    let (mut scene, frames) = (placed.scene, placed.frames);
     scene.meshes = meshes;
     let mut posings = Vec::new();
-    for (instance, node) in &deforming {
+    for (instance, node) in &placed.deforming {
         let Some(rig) = rigs.get(&(scene.instances[*instance].mesh as usize)) else {
             continue;
         };
-        let posing = skins::posing(
-            (*instance, node),
-            rig,
-            (&tracks, &frames),
-            &buffers,
-            &mut warnings,
-        );
-        posings.push(posing.map_err(fail)?);
+        let (shown, motion) = ((*instance, node), (&tracks, &frames));
+        let posing = skins::posing(shown, rig, motion, &buffers, &mut warnings);
+        posings.push(posing.map_err(&fail)?);
     }
-    attach(&mut scene, posings, &rigs, meshes::MANY + buffers.len()).map_err(fail)?;
+    attach(&mut scene, posings, &rigs, meshes::MANY + buffers.len()).map_err(&fail)?;
     lights::warn_of_units(&document, &scene.lights, &mut warnings);
     // The warnings name parts of the file; each must name the file itself.
     let name = path.display().to_string();

@@ -14,7 +14,7 @@ use super::lights;
 use crate::scene::defaults::least_reach;
 use crate::scene::motion::Rigs;
 use crate::scene::warnings::Warnings;
-use crate::scene::{Camera, Instance, Mover, Scene, Track};
+use crate::scene::{Camera, Instance, Scene, Track};
 
 /// A node to visit with its parent's frame.
 struct Visit<'a> {
@@ -61,12 +61,7 @@ impl Placed<'_> {
             ));
         }
         self.depths.push(depth);
-        self.scene.movers.push(Mover {
-            parent,
-            placed,
-            track,
-        });
-        Ok(self.scene.movers.len() as u32 - 1)
+        Ok(self.scene.add_mover(parent, placed, track))
     }
 }
 
@@ -79,10 +74,8 @@ pub(super) fn place<'a>(
     warnings: &mut Warnings,
 ) -> Result<Placed<'a>, String> {
     let mut placed = Placed::default();
-    let Some(root) = document
-        .default_scene()
-        .or_else(|| document.scenes().next())
-    else {
+    let root = document.default_scene();
+    let Some(root) = root.or_else(|| document.scenes().next()) else {
         warnings.add("the file has no scene", "");
         return Ok(placed);
     };
@@ -96,64 +89,47 @@ pub(super) fn place<'a>(
     let mut stack: Vec<Visit> = root.nodes().map(top).collect();
     stack.reverse();
     while let Some(visit) = stack.pop() {
-        let Visit {
-            node,
-            mut mover,
-            above,
-            visible,
-        } = visit;
+        let (node, mut mover, above) = (visit.node, visit.mover, visit.above);
         if std::mem::replace(&mut seen[node.index()], true) {
-            return Err(format!(
-                "node {} is its own ancestor or has two parents. Export it again",
-                node.index()
-            ));
+            let what = "is its own ancestor or has two parents. Export it again";
+            return Err(format!("node {} {what}", node.index()));
         }
-        let name = node
-            .name()
-            .map_or_else(|| format!("node {}", node.index()), str::to_owned);
+        let own = || format!("node {}", node.index());
+        let name = node.name().map_or_else(own, str::to_owned);
         let mut local = above * Mat4::from_cols_array_2d(&node.transform().matrix());
         if !local.is_finite() {
-            return Err(format!(
-                "node '{name}' has a transform that is not finite. Export it again"
-            ));
+            let what = "has a transform that is not finite. Export it again";
+            return Err(format!("node '{name}' {what}"));
         }
         if let Some(track) = tracks.of(&node) {
             mover = Some(placed.add_mover(mover, above, track, &name)?);
             local = Mat4::IDENTITY;
         }
         placed.frames.insert(node.index(), (mover, local));
-        let visible = visible && is_visible(&node);
-        if !visible && (node.mesh().is_some() || node.light().is_some()) {
+        let visible = visit.visible && is_visible(&node);
+        let frame = (mover, local);
+        if !visible && (node.mesh().is_some() || lights::has_one(&node)) {
             warnings.add("invisible nodes (KHR_node_visibility) are left out", &name);
         }
         if visible {
-            add_instances(
-                &mut placed,
-                &node,
-                (mover, local),
-                &name,
-                rigs,
-                (document, buffers),
-            )?;
+            add_instances(&mut placed, &node, frame, &name, rigs, (document, buffers))?;
         }
         add_light_and_camera(
             &mut placed.scene,
             document,
             &node,
-            (mover, local),
+            frame,
             &name,
             visible,
             warnings,
         );
-        let children: Vec<Visit> = node
-            .children()
-            .map(|node| Visit {
-                node,
-                mover,
-                above: local,
-                visible,
-            })
-            .collect();
+        let below = |node| Visit {
+            node,
+            mover,
+            above: local,
+            visible,
+        };
+        let children: Vec<Visit> = node.children().map(below).collect();
         stack.extend(children.into_iter().rev());
     }
     Ok(placed)

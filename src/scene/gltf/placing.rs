@@ -6,7 +6,7 @@ use ::gltf::{Material, texture};
 use glam::{Affine2, Vec2};
 
 use crate::scene::coordinates::References;
-use crate::scene::{Lookup, Wrap};
+use crate::scene::{Lookup, Lookups, Wrap};
 
 /// A coordinate set of the file and a transform that is baked into the vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,6 +75,18 @@ impl Placing {
     /// Adds a texture and returns its index.
     pub fn add_texture(&mut self, info: &texture::Info) -> usize {
         self.add(UvSource::of(info), lookup(&info.texture().sampler()))
+    }
+
+    /// The lookups of base colour, metallic and roughness, normals and emission.
+    pub fn lookups(&self, references: [Option<usize>; 4], uv: &UvSources) -> Lookups {
+        let [base_color, metallic_roughness, normal, emission] =
+            references.map(|reference| self.lookup(reference, uv));
+        Lookups {
+            base_color,
+            metallic_roughness,
+            normal,
+            emission,
+        }
     }
 
     /// Adds the normal map of a material that has one.

@@ -12,6 +12,43 @@ use crate::scene::motion::{Posing, Rig};
 use crate::scene::warnings::Warnings;
 use crate::scene::{Curve, Influence, Interpolation, Joint, Morph};
 
+/// The influences of each vertex, from all sets. `take` reserves memory.
+fn influences(
+    primitive: &Primitive,
+    buffers: &Buffers,
+    count: usize,
+    take: &mut impl FnMut(bool) -> Result<(), &'static str>,
+) -> Result<Vec<Vec<Influence>>, String> {
+    let mut each: Vec<Vec<Influence>> = vec![Vec::new(); count];
+    for set in 0.. {
+        let semantics = (
+            primitive.get(&Semantic::Joints(set)),
+            primitive.get(&Semantic::Weights(set)),
+        );
+        let (Some(joints), Some(weights)) = semantics else {
+            break;
+        };
+        take(true)?;
+        let joints = accessors::floats::<4>(&joints, buffers)?;
+        let weights = accessors::floats::<4>(&weights, buffers)?;
+        let (some, others) = (joints.len(), weights.len());
+        if some != count || others != count {
+            return Err(format!(
+                "{some} joints and {others} weights for {count} vertices"
+            ));
+        }
+        for (list, (joints, weights)) in each.iter_mut().zip(joints.into_iter().zip(weights)) {
+            let all = joints.into_iter().zip(weights);
+            let all = all.filter(|(_, weight)| *weight > 0.0 && weight.is_finite());
+            list.extend(all.map(|(joint, weight)| Influence {
+                joint: joint as u32,
+                weight,
+            }));
+        }
+    }
+    Ok(each)
+}
+
 /// The rig of a primitive with `count` vertices; `None` without joints and targets. Its size is
 /// subtracted from `room`.
 pub(super) fn read(
@@ -54,38 +91,7 @@ pub(super) fn read(
             tangents: vectors(target.tangents())?,
         });
     }
-    let mut each: Vec<Vec<Influence>> = vec![Vec::new(); count];
-    for set in 0.. {
-        let semantics = (
-            primitive.get(&Semantic::Joints(set)),
-            primitive.get(&Semantic::Weights(set)),
-        );
-        let (Some(joints), Some(weights)) = semantics else {
-            break;
-        };
-        take(true)?;
-        let (joints, weights) = (
-            accessors::floats::<4>(&joints, buffers)?,
-            accessors::floats::<4>(&weights, buffers)?,
-        );
-        if joints.len() != count || weights.len() != count {
-            return Err(format!(
-                "{} joints and {} weights for {count} vertices",
-                joints.len(),
-                weights.len()
-            ));
-        }
-        for (list, (joints, weights)) in each.iter_mut().zip(joints.into_iter().zip(weights)) {
-            let all = joints
-                .into_iter()
-                .zip(weights)
-                .filter(|(_, weight)| *weight > 0.0 && weight.is_finite());
-            list.extend(all.map(|(joint, weight)| Influence {
-                joint: joint as u32,
-                weight,
-            }));
-        }
-    }
+    let each = influences(primitive, buffers, count, &mut take)?;
     let mut rig = Rig {
         morphs,
         ..Rig::default()

@@ -144,6 +144,21 @@ impl Scene {
             .filter(move |i| i.mover.is_some() || deforming.contains(&i.mesh))
     }
 
+    /// Adds a mover and returns its index.
+    pub(in crate::scene) fn add_mover(
+        &mut self,
+        parent: Option<u32>,
+        placed: Mat4,
+        track: Arc<Track>,
+    ) -> u32 {
+        self.movers.push(Mover {
+            parent,
+            placed,
+            track,
+        });
+        self.movers.len() as u32 - 1
+    }
+
     /// World transforms of all movers at a time in seconds.
     pub fn mover_frames(&self, time: f32) -> Vec<Mat4> {
         let mut frames: Vec<Mat4> = Vec::with_capacity(self.movers.len());

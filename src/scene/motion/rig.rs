@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::{Curve, Deformer, Influence, Joint, Morph};
 use crate::scene::mesh::drop_flat;
-use crate::scene::{Mesh, Scene};
+use crate::scene::{Mesh, Scene, Vertex};
 
 /// Joints and morph targets of a mesh or primitive.
 #[derive(Clone, Debug, Default)]
@@ -85,6 +85,30 @@ impl Rig {
     }
 }
 
+fn if_needed<T: Clone>(is_needed: bool, list: &[T]) -> Vec<T> {
+    if is_needed { list.to_vec() } else { Vec::new() }
+}
+
+impl Rig {
+    /// Lists that are not needed stay empty.
+    fn deformer(&self, mesh: u32, rest: Vec<Vertex>, posing: Posing) -> Deformer {
+        let is_skinned = !posing.joints.is_empty();
+        let is_flat = self.flat.contains(&true);
+        Deformer {
+            mesh,
+            rest,
+            morphs: self.morphs.clone(),
+            weights: posing.weights,
+            period: posing.period,
+            joints: posing.joints,
+            influences: if_needed(is_skinned, &self.influences),
+            influenced: if_needed(is_skinned, &self.influenced),
+            flat: if_needed(is_flat, &self.flat),
+            ..Deformer::default()
+        }
+    }
+}
+
 /// Poses the meshes of instances and creates deformers for those that move. `rigs` is indexed by
 /// the scene's meshes. Copies of meshes use at most `room` vertices and indices.
 pub(in crate::scene) fn attach(
@@ -95,66 +119,31 @@ pub(in crate::scene) fn attach(
 ) -> Result<(), String> {
     // The first posing of a mesh reuses it, unless another instance shows it too.
     let posing: HashSet<usize> = posings.iter().map(|p| p.instance).collect();
-    let shown = scene
-        .instances
-        .iter()
-        .enumerate()
-        .filter(|(i, _)| !posing.contains(i));
+    let instances = scene.instances.iter().enumerate();
+    let shown = instances.filter(|(i, _)| !posing.contains(i));
     let mut taken: HashSet<u32> = shown.map(|(_, instance)| instance.mesh).collect();
     let mut read: HashMap<u32, Mesh> = HashMap::new();
     let frames = scene.mover_frames(0.0);
-    for Posing {
-        instance,
-        joints,
-        weights,
-        period,
-    } in posings
-    {
-        let mesh = scene.instances[instance].mesh;
+    for posing in posings {
+        let mesh = scene.instances[posing.instance].mesh;
         let Some(rig) = rigs.get(&(mesh as usize)) else {
             continue;
         };
-        let own = if taken.insert(mesh) {
-            mesh
-        } else {
-            scene.meshes.len() as u32
+        let own = match taken.insert(mesh) {
+            true => mesh,
+            false => scene.meshes.len() as u32,
         };
         // The mesh may already be posed.
-        let rest = read
-            .entry(mesh)
-            .or_insert_with(|| scene.meshes[mesh as usize].clone());
+        let rest = read.entry(mesh);
+        let rest = rest.or_insert_with(|| scene.meshes[mesh as usize].clone());
         if own != mesh {
             let left = room.checked_sub(rest.vertices.len() + rest.indices.len());
             room = left.ok_or("its skins and weights make very many copies of its meshes")?;
             scene.meshes.push(rest.clone());
         }
         let rest = rest.vertices.clone();
-        scene.instances[instance].mesh = own;
-        let skinned = !joints.is_empty();
-        let mut deformer = Deformer {
-            mesh: own,
-            rest,
-            morphs: rig.morphs.clone(),
-            weights,
-            period,
-            joints,
-            influences: if skinned {
-                rig.influences.clone()
-            } else {
-                Vec::new()
-            },
-            influenced: if skinned {
-                rig.influenced.clone()
-            } else {
-                Vec::new()
-            },
-            flat: if rig.flat.contains(&true) {
-                rig.flat.clone()
-            } else {
-                Vec::new()
-            },
-            ..Deformer::default()
-        };
+        scene.instances[posing.instance].mesh = own;
+        let mut deformer = rig.deformer(own, rest, posing);
         let moves = deformer.joints.iter().any(|j| j.mover.is_some())
             || deformer.weights.iter().any(|w| w.times().len() > 1);
         let posed = deformer.posed(&scene.meshes[own as usize], &frames, 0.0);

@@ -131,73 +131,55 @@ mod tests {
 
     #[test]
     fn entries_have_options_and_a_file() {
+        let (plain, none) = ([[1.0; 2], [0.0; 2]], &[][..]);
+        let moved = [[4.0; 2], [1.0, 2.0]];
+        let left = &["-mm", "-imfchan", "-t"][..];
         for (entry, file, [scale, offset], strength, left_out) in [
-            ("a b.png", "a b.png", [[1.0; 2], [0.0; 2]], None, &[][..]),
-            (
-                "-bm 0.5 t\\wall.png",
-                "t\\wall.png",
-                [[1.0; 2], [0.0; 2]],
-                Some(0.5),
-                &[],
-            ),
+            ("a b.png", "a b.png", plain, None, none),
+            ("-bm 0.5 t\\wall.png", "t\\wall.png", plain, Some(0.5), none),
             (
                 "-o 1 2 -s 4 4 1 -clamp on a.png",
                 "a.png",
-                [[4.0; 2], [1.0, 2.0]],
+                moved,
                 None,
-                &[],
+                none,
             ),
             (
                 "-O 1 -S 2 a.png",
                 "a.png",
                 [[2.0, 1.0], [1.0, 0.0]],
                 None,
-                &[],
+                none,
             ),
             (
                 "  -mm 0 1 -blendu on -texres 512 a.png",
                 "a.png",
-                [[1.0; 2], [0.0; 2]],
+                plain,
                 None,
-                &[],
+                none,
             ),
             (
                 "-mm 0.1 2 -imfchan r -t 1 a.png",
                 "a.png",
-                [[1.0; 2], [0.0; 2]],
+                plain,
                 None,
-                &["-mm", "-imfchan", "-t"],
+                left,
             ),
-            ("-s 2 2 7", "7", [[2.0; 2], [0.0; 2]], None, &[]),
-            (
-                "-s nan inf 1 a.png # x",
-                "a.png # x",
-                [[1.0; 2], [0.0; 2]],
-                None,
-                &[],
-            ),
+            ("-s 2 2 7", "7", [[2.0; 2], [0.0; 2]], None, none),
+            ("-s nan inf 1 a.png # x", "a.png # x", plain, None, none),
         ] {
             let map = parse(entry).unwrap();
             let expected = (file, scale, offset, strength, left_out);
-            let Map {
-                file,
-                placement,
-                strength,
-                left_out,
-                clamp,
-            } = &map;
-            assert_eq!(*clamp, entry.contains("-clamp on"), "{entry}");
-            assert_eq!(
-                (
-                    file.as_str(),
-                    placement.scale,
-                    placement.offset,
-                    *strength,
-                    &left_out[..]
-                ),
-                expected,
-                "{entry}"
+            assert_eq!(map.clamp, entry.contains("-clamp on"), "{entry}");
+            let Placement { scale, offset } = map.placement;
+            let found = (
+                map.file.as_str(),
+                scale,
+                offset,
+                map.strength,
+                &map.left_out[..],
             );
+            assert_eq!(found, expected, "{entry}");
         }
         assert!(
             ["", "-clamp on", "# a.png"]

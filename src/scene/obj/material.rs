@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::library::Definition;
 use super::lines::shown;
 use super::maps::{Map, Placement, parse};
-use crate::scene::phong::{Asked, Finder, Found, Maps, Parts, Picture, Words, opacity};
+use crate::scene::phong::{Asked, Finder, Found, Maps, Parts, Picture, Words};
 use crate::scene::texture::{Requests, Source};
 use crate::scene::warnings::Warnings;
 use crate::scene::{Lookup, Material, Wrap};
@@ -53,6 +53,20 @@ struct Reader<'a, 'b> {
     warnings: &'a mut Warnings,
 }
 
+fn picture((image, map): (Source, Map)) -> Picture {
+    let wrap = match map.clamp {
+        true => [Wrap::Clamp; 2],
+        false => [Wrap::Repeat; 2],
+    };
+    Picture {
+        image,
+        lookup: Lookup {
+            wrap,
+            ..Lookup::default()
+        },
+    }
+}
+
 /// A material from its statements.
 pub(super) fn read(
     definition: &Definition,
@@ -65,54 +79,29 @@ pub(super) fn read(
         pictures,
         warnings,
     };
-    let [color, alpha, emission_map] = ["map_kd", "map_d", "map_ke"].map(|key| reader.map(key));
-    let [rough_map, metal_map] = ["map_pr", "map_pm"].map(|key| reader.map(key));
-    let (normal_map, is_bump) = reader.normal_map();
-    let strength = normal_map.as_ref().and_then(|(_, map)| map.strength);
-    let placement = reader.placement([
-        &color,
-        &alpha,
-        &emission_map,
-        &rough_map,
-        &metal_map,
-        &normal_map,
-    ]);
-    let laid = |map: Option<(Source, Map)>| {
-        map.map(|(image, map)| {
-            let wrap = if map.clamp {
-                [Wrap::Clamp; 2]
-            } else {
-                [Wrap::Repeat; 2]
-            };
-            Picture {
-                image,
-                lookup: Lookup {
-                    wrap,
-                    ..Lookup::default()
-                },
-            }
-        })
-    };
+    let [color, alpha, glow] = ["map_kd", "map_d", "map_ke"].map(|key| reader.map(key));
+    let [rough, metal] = ["map_pr", "map_pm"].map(|key| reader.map(key));
+    let (normal, is_bump) = reader.normal_map();
+    let strength = normal.as_ref().and_then(|(_, map)| map.strength);
+    let placement = reader.placement([&color, &alpha, &glow, &rough, &metal, &normal]);
+    let laid = |map: Option<(Source, Map)>| map.map(picture);
     let maps = Maps {
         color: laid(color),
         alpha: laid(alpha),
-        roughness: laid(rough_map),
-        metallic: laid(metal_map),
-        normal: laid(normal_map),
+        roughness: laid(rough),
+        metallic: laid(metal),
+        normal: laid(normal),
         is_bump,
-        emission: laid(emission_map),
+        emission: laid(glow),
     };
+    let base_color = reader.factor("kd", "map_Kd", maps.color.is_some());
+    let emission = reader.factor("ke", "map_Ke", maps.emission.is_some());
+    let opacity = reader.number("d");
+    let opacity = opacity.or_else(|| reader.number("tr").map(|t| 1.0 - t));
     let mut parts = Parts {
-        base_color: reader
-            .factor("kd", "map_Kd", maps.color.is_some())
-            .unwrap_or(Vec3::splat(0.8)),
-        emission: reader
-            .factor("ke", "map_Ke", maps.emission.is_some())
-            .unwrap_or(Vec3::ZERO),
-        opacity: reader
-            .number("d")
-            .or_else(|| reader.number("tr").map(|t| 1.0 - t))
-            .unwrap_or(1.0),
+        base_color: base_color.unwrap_or(Vec3::splat(0.8)),
+        emission: emission.unwrap_or(Vec3::ZERO),
+        opacity: opacity.unwrap_or(1.0),
         cutoff: reader.number("alpha_cutoff"),
         roughness: reader.number("pr"),
         exponent: reader.number("ns"),
@@ -120,14 +109,7 @@ pub(super) fn read(
         maps,
         name,
     };
-    let has_alpha = parts.maps.alpha.is_some();
-    parts.opacity = opacity(
-        parts.opacity,
-        has_alpha,
-        parts.cutoff(),
-        &shown(&parts.name),
-        reader.warnings,
-    );
+    parts.opacity = parts.opacity(&shown(&parts.name), reader.warnings);
     let asked = parts.build(reader.pictures.requests);
     let material = Material {
         ior: reader.number("ior").unwrap_or(1.5).clamp(0.0, 1e6),

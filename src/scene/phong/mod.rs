@@ -5,5 +5,5 @@ mod parts;
 mod pictures;
 
 pub(super) use find::{Finder, Found};
-pub(super) use parts::{Maps, Parts, Picture, grey, opacity};
+pub(super) use parts::{Maps, Parts, Picture, grey};
 pub(super) use pictures::{Asked, Words, decide};

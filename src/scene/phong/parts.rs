@@ -46,62 +46,72 @@ pub(in crate::scene) struct Parts {
     pub maps: Maps,
 }
 
+impl Maps {
+    fn lookups(&self) -> Lookups {
+        let lookup = |first: &Option<Picture>, second: &Option<Picture>| {
+            let map = first.as_ref().or(second.as_ref());
+            map.map_or(Lookup::default(), |map| map.lookup)
+        };
+        Lookups {
+            base_color: lookup(&self.color, &self.alpha),
+            metallic_roughness: lookup(&self.roughness, &self.metallic),
+            normal: lookup(&self.normal, &None),
+            emission: lookup(&self.emission, &None),
+        }
+    }
+}
+
+fn color_recipe(color: Option<Source>, alpha: Option<Source>, mask: u8) -> Option<Recipe> {
+    match (color, alpha) {
+        (Some(image), None) => Some(Recipe::Color { image, mask: None }),
+        (Some(image), Some(alpha)) if image == alpha => Some(Recipe::Color {
+            image,
+            mask: Some(mask),
+        }),
+        (color, Some(alpha)) => Some(Recipe::ColorAndMask { color, alpha, mask }),
+        (None, None) => None,
+    }
+}
+
 impl Parts {
     /// The alpha below which nothing is there.
     pub fn cutoff(&self) -> f32 {
         self.cutoff.unwrap_or(0.5).clamp(0.0, 1.0)
     }
 
+    /// The opacity from 0 to 1. Without a map it is rounded to visible or invisible when drawn, and
+    /// intermediate values give a warning.
+    pub fn opacity(&self, name: &str, warnings: &mut Warnings) -> f32 {
+        let (opacity, cutoff) = (self.opacity.clamp(0.0, 1.0), self.cutoff());
+        if self.maps.alpha.is_none() && opacity < 1.0 && cutoff > 0.0 {
+            let shown = match opacity < cutoff {
+                true => "left out",
+                false => "opaque",
+            };
+            let what = format!("materials with an opacity of {opacity:.2} are {shown}");
+            warnings.add(what, name);
+        }
+        opacity
+    }
+
     /// The material, with its textures requested.
     pub fn build(self, requests: &mut Requests) -> Asked {
         let cutoff = self.cutoff();
         let Parts { name, maps, .. } = self;
-        let lookup =
-            |map: &Option<Picture>| map.as_ref().map_or(Lookup::default(), |map| map.lookup);
-        let lookups = Lookups {
-            base_color: lookup(if maps.color.is_some() {
-                &maps.color
-            } else {
-                &maps.alpha
-            }),
-            metallic_roughness: lookup(if maps.roughness.is_some() {
-                &maps.roughness
-            } else {
-                &maps.metallic
-            }),
-            normal: lookup(&maps.normal),
-            emission: lookup(&maps.emission),
-        };
+        let lookups = maps.lookups();
         let masked = maps.alpha.is_some() || self.opacity < cutoff;
         let mask_by_alpha = maps.color.is_some() && maps.alpha.is_none() && self.cutoff.is_none();
         let file = |map: Option<Picture>| map.map(|map| map.image);
-        let (color, alpha) = (file(maps.color), file(maps.alpha));
-        let (rough_map, metal_map) = (file(maps.roughness), file(maps.metallic));
         let mask = (cutoff * 255.0).round() as u8;
-        let base_color_texture = match (color, alpha) {
-            (Some(image), None) => Some(Recipe::Color { image, mask: None }),
-            (Some(image), Some(alpha)) if image == alpha => Some(Recipe::Color {
-                image,
-                mask: Some(mask),
-            }),
-            (color, Some(alpha)) => Some(Recipe::ColorAndMask { color, alpha, mask }),
-            (None, None) => None,
-        };
+        let base_color_texture = color_recipe(file(maps.color), file(maps.alpha), mask);
+        let (rough_map, metal_map) = (file(maps.roughness), file(maps.metallic));
         let rough_metal = rough_map.is_some() || metal_map.is_some();
         // A missing factor must not disable its map.
-        let metallic = self
-            .metallic
-            .unwrap_or(if metal_map.is_some() { 1.0 } else { 0.0 });
-        let from_exponent = |exponent: f32| {
-            if rough_metal {
-                1.0
-            } else {
-                roughness_of(exponent)
-            }
-        };
-        let roughness = self
-            .roughness
-            .unwrap_or_else(|| self.exponent.map_or(1.0, from_exponent));
+        let own = if metal_map.is_some() { 1.0 } else { 0.0 };
+        let metallic = self.metallic.unwrap_or(own);
+        let exponent = self.exponent.filter(|_| !rough_metal);
+        let roughness = self.roughness;
+        let roughness = roughness.unwrap_or_else(|| exponent.map_or(1.0, roughness_of));
         let mut ask = |recipe: Recipe| requests.ask(recipe, &name);
         let base_color_texture = base_color_texture.map(&mut ask);
         let metallic_roughness_texture = rough_metal.then(|| {
@@ -155,28 +165,4 @@ pub(in crate::scene) fn grey(has_colors: bool) -> Material {
         two_sided: true,
         ..Material::default()
     }
-}
-
-/// An opacity from 0 to 1, rounded to visible or invisible without a map; intermediate values give
-/// a warning.
-pub(in crate::scene) fn opacity(
-    opacity: f32,
-    has_map: bool,
-    cutoff: f32,
-    name: &str,
-    warnings: &mut Warnings,
-) -> f32 {
-    let opacity = opacity.clamp(0.0, 1.0);
-    if !has_map && opacity < 1.0 && cutoff > 0.0 {
-        let shown = if opacity < cutoff {
-            "left out"
-        } else {
-            "opaque"
-        };
-        warnings.add(
-            format!("materials with an opacity of {opacity:.2} are {shown}"),
-            name,
-        );
-    }
-    opacity
 }

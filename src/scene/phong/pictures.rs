@@ -37,12 +37,13 @@ pub(in crate::scene) fn decide(
                 *mark |= wanted;
             }
         };
+        let material = &asked.material;
         mark(
             &mut colors,
-            asked.material.base_color_texture,
+            material.base_color_texture,
             asked.mask_by_alpha,
         );
-        mark(&mut bumps, asked.material.normal_texture, asked.is_bump);
+        mark(&mut bumps, material.normal_texture, asked.is_bump);
     }
     let holes: Vec<Holes> = textures
         .par_iter()
@@ -54,15 +55,12 @@ pub(in crate::scene) fn decide(
         .zip(&bumps)
         .map(|(t, wanted)| !wanted || t.holds_normals())
         .collect();
+    let known = &holes;
     for (number, asked) in materials.iter_mut().enumerate() {
         let material = &mut asked.material;
-        let of = |index: Option<u32>| {
-            index
-                .and_then(|i| holes.get(i as usize))
-                .copied()
-                .unwrap_or(Holes::None)
-        };
-        match of(material.base_color_texture) {
+        let holes = material.base_color_texture;
+        let holes = holes.and_then(|i| known.get(i as usize));
+        match holes.copied().unwrap_or(Holes::None) {
             Holes::Some if asked.mask_by_alpha => {
                 warn(number, &material.name, words.holes);
                 material.alpha_cutoff = material.alpha_cutoff.max(0.5);
@@ -79,15 +77,11 @@ pub(in crate::scene) fn decide(
         }
     }
     let masked = std::mem::take(textures).into_par_iter().zip(holes);
-    *textures = masked
-        .map(|(texture, holes)| {
-            if holes == Holes::Some {
-                texture.masked()
-            } else {
-                texture
-            }
-        })
-        .collect();
+    let masked = masked.map(|(texture, holes)| match holes {
+        Holes::Some => texture.masked(),
+        _ => texture,
+    });
+    *textures = masked.collect();
     drop_unused(&mut materials, textures);
 }
 
