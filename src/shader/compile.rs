@@ -103,6 +103,40 @@ const TOO_MANY: &str = "too many includes";
 /// Maximum nesting depth of includes.
 const MAX_DEPTH: usize = 32;
 
+/// Options for shaders of a stage, and their kind.
+fn options(
+    stage: Stage,
+) -> shaderc::Result<(shaderc::CompileOptions<'static>, shaderc::ShaderKind)> {
+    let mut options = shaderc::CompileOptions::new()?;
+    options.set_target_env(
+        shaderc::TargetEnv::Vulkan,
+        shaderc::EnvVersion::Vulkan1_3 as u32,
+    );
+    options.set_optimization_level(shaderc::OptimizationLevel::Performance);
+    // Keeps the names of resources.
+    options.set_generate_debug_info();
+    options.set_auto_bind_uniforms(true);
+    let (number, kind) = match stage {
+        Stage::Vertex => (0, shaderc::ShaderKind::Vertex),
+        Stage::TessControl => (1, shaderc::ShaderKind::TessControl),
+        Stage::TessEvaluation => (2, shaderc::ShaderKind::TessEvaluation),
+        Stage::Geometry => (3, shaderc::ShaderKind::Geometry),
+        Stage::Fragment => (4, shaderc::ShaderKind::Fragment),
+        Stage::Compute => (5, shaderc::ShaderKind::Compute),
+    };
+    for resource in [
+        shaderc::ResourceKind::Sampler,
+        shaderc::ResourceKind::Texture,
+        shaderc::ResourceKind::Image,
+        shaderc::ResourceKind::Buffer,
+        shaderc::ResourceKind::StorageBuffer,
+    ] {
+        // Stages are compiled separately and share one descriptor set.
+        options.set_binding_base(resource, number * MAX_BINDINGS as u32);
+    }
+    Ok((options, kind))
+}
+
 impl ShaderCompiler {
     /// A compiler for `folder`; `cache` stores compiled modules.
     pub fn new(folder: &Path, cache: Option<&Path>) -> ShaderCompiler {
@@ -257,44 +291,15 @@ impl ShaderCompiler {
         texts: &BTreeMap<String, String>,
     ) -> Result<Vec<u32>, Vec<Diagnostic>> {
         let broken = |message: String| {
-            vec![Diagnostic::error(
-                Place {
-                    file: self.folder.join(&source.file),
-                    ..Place::default()
-                },
-                message,
-            )]
+            let place = Place {
+                file: self.folder.join(&source.file),
+                ..Place::default()
+            };
+            vec![Diagnostic::error(place, message)]
         };
-        let compiler = COMPILER
-            .as_ref()
-            .map_err(|e| broken(format!("the compiler did not start: {e}")))?;
-        let mut options = shaderc::CompileOptions::new().map_err(|e| broken(e.to_string()))?;
-        options.set_target_env(
-            shaderc::TargetEnv::Vulkan,
-            shaderc::EnvVersion::Vulkan1_3 as u32,
-        );
-        options.set_optimization_level(shaderc::OptimizationLevel::Performance);
-        // Keeps the names of resources.
-        options.set_generate_debug_info();
-        options.set_auto_bind_uniforms(true);
-        let (stage, kind) = match source.stage {
-            Stage::Vertex => (0, shaderc::ShaderKind::Vertex),
-            Stage::TessControl => (1, shaderc::ShaderKind::TessControl),
-            Stage::TessEvaluation => (2, shaderc::ShaderKind::TessEvaluation),
-            Stage::Geometry => (3, shaderc::ShaderKind::Geometry),
-            Stage::Fragment => (4, shaderc::ShaderKind::Fragment),
-            Stage::Compute => (5, shaderc::ShaderKind::Compute),
-        };
-        for resource in [
-            shaderc::ResourceKind::Sampler,
-            shaderc::ResourceKind::Texture,
-            shaderc::ResourceKind::Image,
-            shaderc::ResourceKind::Buffer,
-            shaderc::ResourceKind::StorageBuffer,
-        ] {
-            // Stages are compiled separately and share one descriptor set.
-            options.set_binding_base(resource, stage * MAX_BINDINGS as u32);
-        }
+        let compiler = COMPILER.as_ref();
+        let compiler = compiler.map_err(|e| broken(format!("the compiler did not start: {e}")))?;
+        let (mut options, kind) = options(source.stage).map_err(|e| broken(e.to_string()))?;
         // Files that include others twice grow exponentially with depth.
         let (count, chain) = (Cell::new(0), RefCell::new(Vec::new()));
         options.set_include_callback(move |name, _, _, depth| {
@@ -326,19 +331,9 @@ impl ShaderCompiler {
             message,
         });
         late.and_then(|()| check_growth(texts)).map_err(|grown| {
-            let file = self
-                .find(&grown.file)
-                .unwrap_or_else(|| PathBuf::from(format!("{} (generated)", grown.file)));
-            let source = texts
-                .get(&grown.file)
-                .and_then(|t| t.lines().nth(grown.line.saturating_sub(1) as usize));
-            let place = Place {
-                file,
-                line: grown.line,
-                column: 0,
-            };
+            let (place, source) = self.place(&grown.file, grown.line, texts);
             vec![Diagnostic {
-                source: source.map(|l| l.trim().into()),
+                source,
                 ..Diagnostic::error(place, grown.message)
             }]
         })?;
@@ -371,6 +366,24 @@ impl ShaderCompiler {
         names
     }
 
+    /// A line of a file, and its text.
+    fn place(
+        &self,
+        file: &str,
+        line: u32,
+        texts: &BTreeMap<String, String>,
+    ) -> (Place, Option<String>) {
+        let generated = || PathBuf::from(format!("{file} (generated)"));
+        let text = texts.get(file);
+        let text = text.and_then(|t| t.lines().nth(line.saturating_sub(1) as usize));
+        let place = Place {
+            file: self.find(file).unwrap_or_else(generated),
+            line,
+            column: 0,
+        };
+        (place, text.map(|l| l.trim().to_string()))
+    }
+
     /// Splits the compiler's output into messages with their lines.
     fn messages(
         &self,
@@ -380,50 +393,28 @@ impl ShaderCompiler {
     ) -> Vec<Diagnostic> {
         let mut list: Vec<Diagnostic> = Vec::new();
         for line in text.lines() {
-            let mut parts = line.splitn(4, ':');
-            let parsed = match (
-                parts.next(),
-                parts.next().map(str::parse::<u32>),
-                parts.next(),
-                parts.next(),
-            ) {
-                (Some(file), Some(Ok(number)), Some(level), Some(message))
-                    if texts.contains_key(file) =>
-                {
-                    Some((file, number, level.trim(), message.trim()))
-                }
-                _ => None,
-            };
-            let Some((file, number, level, message)) = parsed else {
+            let parts: Vec<&str> = line.splitn(4, ':').collect();
+            let &[file, number, level, message] = &parts[..] else {
                 continue;
             };
-            let path = self
-                .find(file)
-                .unwrap_or_else(|| PathBuf::from(format!("{file} (generated)")));
-            let place = Place {
-                file: path,
-                line: number,
-                column: 0,
+            let (level, message) = (level.trim(), message.trim());
+            let Some(number) = number.parse().ok().filter(|_| texts.contains_key(file)) else {
+                continue;
             };
+            let (place, source) = self.place(file, number, texts);
             // Some messages print a whole type.
             let told = excerpt(&shortened(message), 400);
             let mut found = match level {
                 "error" => Diagnostic::error(place, told),
                 _ => Diagnostic::warning(place, told),
             };
-            found.source = texts
-                .get(file)
-                .and_then(|t| t.lines().nth(number.saturating_sub(1) as usize))
-                .map(|l| l.trim().to_string());
+            found.source = source;
             if let Some(name) = missing_member(message) {
                 let line = found.source.clone().unwrap_or_default();
-                let members = texts
-                    .get("params.glsl")
-                    .filter(|_| line.contains(&format!("params.{name}")));
-                found = found.nearest(
-                    name,
-                    members.into_iter().flat_map(|text| params_members(text)),
-                );
+                let members = texts.get("params.glsl");
+                let members = members.filter(|_| line.contains(&format!("params.{name}")));
+                let members = members.into_iter().flat_map(|text| params_members(text));
+                found = found.nearest(name, members);
             }
             // The compiler repeats every include up to the first error.
             let again =

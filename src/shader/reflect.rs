@@ -8,6 +8,7 @@ use crate::vulkan::Stage;
 use spirq::prelude::*;
 use spirq::spirv::{Dim, ExecutionMode as Mode, ImageFormat};
 use spirq::ty::ScalarType;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Dimensionality of an image.
@@ -105,6 +106,74 @@ pub struct Interface {
 /// Maximum resources per stage; stages use consecutive ranges of binding numbers.
 pub const MAX_BINDINGS: usize = 48;
 
+impl Interface {
+    /// Adds a descriptor. `members` are the read ones of a uniform block.
+    fn bind(
+        &mut self,
+        var: &Variable,
+        access: Access,
+        members: Option<&Option<BTreeSet<u32>>>,
+    ) -> std::result::Result<(), String> {
+        let Variable::Descriptor {
+            name,
+            desc_bind,
+            desc_ty,
+            ty,
+            nbind,
+        } = var
+        else {
+            return Ok(());
+        };
+        let bind = desc_bind.bind();
+        let name = name.clone().filter(|n| !n.is_empty());
+        let name = name.or_else(|| block_name(ty)).unwrap_or_default();
+        let taken = self.bindings.iter().any(|b| b.binding == bind);
+        check_binding(&name, *nbind, taken || desc_bind.set() != 0)?;
+        if self.bindings.len() >= MAX_BINDINGS {
+            return Err(format!("a shader binds at most {MAX_BINDINGS} resources"));
+        }
+        let resource = resource(desc_ty, ty, access)
+            .ok_or(format!("'{name}' is of a kind that graphs cannot bind"))?;
+        let layout = Layout::of(ty).map(Arc::new);
+        let reads = members.zip(layout.as_ref());
+        let reads = reads.and_then(|(read, layout)| layout.bytes_of(read.as_ref()?));
+        self.bindings.push(Binding {
+            name,
+            binding: bind,
+            resource,
+            layout,
+            reads,
+        });
+        Ok(())
+    }
+}
+
+fn check_binding(name: &str, count: u32, is_set: bool) -> std::result::Result<(), String> {
+    if count != 1 {
+        let what = "is an array of resources; bind them one by one, with names of their own";
+        return Err(format!("'{name}' {what}"));
+    }
+    if is_set {
+        let what = "has a set or binding of its own; leave out layout(set, binding)";
+        return Err(format!("'{name}' {what}"));
+    }
+    Ok(())
+}
+
+fn local_size(entry: &EntryPoint, sizes: &mut [u32; 3]) {
+    for mode in &entry.exec_modes {
+        if matches!(mode.exec_mode, Mode::LocalSize | Mode::LocalSizeId) {
+            for (size, operand) in sizes.iter_mut().zip(&mode.operands) {
+                *size = match operand.value {
+                    ConstantValue::U32(v) => v,
+                    ConstantValue::S32(v) => v.cast_unsigned(),
+                    _ => 1,
+                };
+            }
+        }
+    }
+}
+
 /// Reflects the interface of a module.
 ///
 /// # Errors
@@ -131,49 +200,10 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
     };
     for var in &entry.vars {
         match var {
-            Variable::Descriptor {
-                name,
-                desc_bind,
-                desc_ty,
-                ty,
-                nbind,
-            } => {
-                let name = name
-                    .clone()
-                    .filter(|n| !n.is_empty())
-                    .or_else(|| block_name(ty))
-                    .unwrap_or_default();
-                if *nbind != 1 {
-                    return Err(format!(
-                        "'{name}' is an array of resources; bind them one by one, with names of their own"
-                    ));
-                }
-                if desc_bind.set() != 0
-                    || interface
-                        .bindings
-                        .iter()
-                        .any(|b| b.binding == desc_bind.bind())
-                {
-                    return Err(format!(
-                        "'{name}' has a set or binding of its own; leave out layout(set, binding)"
-                    ));
-                }
-                if interface.bindings.len() >= MAX_BINDINGS {
-                    return Err(format!("a shader binds at most {MAX_BINDINGS} resources"));
-                }
-                let access = accesses.get(&desc_bind.bind()).copied().unwrap_or_default();
-                let resource = resource(desc_ty, ty, access)
-                    .ok_or(format!("'{name}' is of a kind that graphs cannot bind"))?;
-                let layout = Layout::of(ty).map(Arc::new);
-                let reads = members.get(&desc_bind.bind()).zip(layout.as_ref());
-                let reads = reads.and_then(|(read, layout)| layout.bytes_of(read.as_ref()?));
-                interface.bindings.push(Binding {
-                    name,
-                    binding: desc_bind.bind(),
-                    resource,
-                    layout,
-                    reads,
-                });
+            Variable::Descriptor { desc_bind, .. } => {
+                let number = &desc_bind.bind();
+                let access = accesses.get(number).copied().unwrap_or_default();
+                interface.bind(var, access, members.get(number))?;
             }
             Variable::PushConstant { ty, .. } if ty.nbyte().is_some_and(|n| n > 4) => {
                 return Err(String::from(
@@ -188,17 +218,7 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
             _ => {}
         }
     }
-    for mode in &entry.exec_modes {
-        if matches!(mode.exec_mode, Mode::LocalSize | Mode::LocalSizeId) {
-            for (size, operand) in interface.local_size.iter_mut().zip(&mode.operands) {
-                *size = match operand.value {
-                    ConstantValue::U32(v) => v,
-                    ConstantValue::S32(v) => v.cast_unsigned(),
-                    _ => 1,
-                };
-            }
-        }
-    }
+    local_size(entry, &mut interface.local_size);
     interface.bindings.sort_by(|a, b| a.name.cmp(&b.name));
     interface.outputs.sort_unstable();
     interface.outputs.dedup();

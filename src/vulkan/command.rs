@@ -454,50 +454,13 @@ impl Commands<'_> {
         color: &[ColorAttachment<'_>],
         depth: Option<(&View, Option<f32>, bool)>,
     ) {
-        let load = |clear: bool| {
-            if clear {
-                vk::AttachmentLoadOp::CLEAR
-            } else {
-                vk::AttachmentLoadOp::LOAD
-            }
-        };
-        let colors: Vec<_> = color
-            .iter()
-            .map(|slot| match slot {
-                None => vk::RenderingAttachmentInfo::default(),
-                Some((view, clear)) => vk::RenderingAttachmentInfo::default()
-                    .image_view(view.handle)
-                    .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
-                    .load_op(load(clear.is_some()))
-                    .store_op(vk::AttachmentStoreOp::STORE)
-                    .clear_value(vk::ClearValue {
-                        color: vk::ClearColorValue {
-                            float32: clear.unwrap_or_default(),
-                        },
-                    }),
-            })
-            .collect();
-        let depth_info = depth.map(|(view, clear, write)| {
-            vk::RenderingAttachmentInfo::default()
-                .image_view(view.handle)
-                .image_layout(if write {
-                    vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL
-                } else {
-                    vk::ImageLayout::DEPTH_READ_ONLY_OPTIMAL
-                })
-                .load_op(load(clear.is_some()))
-                .store_op(if write {
-                    vk::AttachmentStoreOp::STORE
-                } else {
-                    vk::AttachmentStoreOp::NONE
-                })
-                .clear_value(vk::ClearValue {
-                    depth_stencil: vk::ClearDepthStencilValue {
-                        depth: clear.unwrap_or(1.0),
-                        stencil: 0,
-                    },
-                })
+        let colors = color.iter().map(|slot| {
+            let plain = vk::RenderingAttachmentInfo::default();
+            slot.as_ref()
+                .map_or(plain, |(view, clear)| color_attachment(view, *clear))
         });
+        let colors: Vec<_> = colors.collect();
+        let depth_info = depth.map(|(view, clear, write)| depth_attachment(view, clear, write));
         let area = vk::Rect2D::default().extent(vk::Extent2D {
             width: size[0],
             height: size[1],
@@ -771,4 +734,51 @@ fn layers(image: &Image, mip: u32) -> vk::ImageSubresourceLayers {
         base_array_layer: 0,
         layer_count: image.desc.layers,
     }
+}
+
+/// How an attachment starts.
+fn load(clear: bool) -> vk::AttachmentLoadOp {
+    match clear {
+        true => vk::AttachmentLoadOp::CLEAR,
+        false => vk::AttachmentLoadOp::LOAD,
+    }
+}
+
+fn color_attachment(view: &View, clear: Option<[f32; 4]>) -> vk::RenderingAttachmentInfo<'static> {
+    let float32 = clear.unwrap_or_default();
+    vk::RenderingAttachmentInfo::default()
+        .image_view(view.handle)
+        .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
+        .load_op(load(clear.is_some()))
+        .store_op(vk::AttachmentStoreOp::STORE)
+        .clear_value(vk::ClearValue {
+            color: vk::ClearColorValue { float32 },
+        })
+}
+
+fn depth_attachment(
+    view: &View,
+    clear: Option<f32>,
+    write: bool,
+) -> vk::RenderingAttachmentInfo<'static> {
+    let (layout, store) = match write {
+        true => (
+            vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL,
+            vk::AttachmentStoreOp::STORE,
+        ),
+        false => (
+            vk::ImageLayout::DEPTH_READ_ONLY_OPTIMAL,
+            vk::AttachmentStoreOp::NONE,
+        ),
+    };
+    let depth_stencil = vk::ClearDepthStencilValue {
+        depth: clear.unwrap_or(1.0),
+        stencil: 0,
+    };
+    vk::RenderingAttachmentInfo::default()
+        .image_view(view.handle)
+        .image_layout(layout)
+        .load_op(load(clear.is_some()))
+        .store_op(store)
+        .clear_value(vk::ClearValue { depth_stencil })
 }

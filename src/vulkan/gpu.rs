@@ -211,10 +211,8 @@ fn create_instance(
         let layers = entry
             .enumerate_instance_layer_properties()
             .map_err(VulkanError::at("list layers"))?;
-        let has_layer = layers
-            .iter()
-            .any(|l| l.layer_name_as_c_str() == Ok(VALIDATION));
-        if validation && !has_layer {
+        let is_validation = |l: &vk::LayerProperties| l.layer_name_as_c_str() == Ok(VALIDATION);
+        if validation && !layers.iter().any(is_validation) {
             return Err(VulkanError::NoValidation);
         }
         let extensions = entry
@@ -225,16 +223,9 @@ fn create_instance(
         // portability drivers is enabled.
         let portability = cfg!(target_os = "macos")
             && super::has(&extensions, khr::portability_enumeration::NAME);
-        let layer_names = if validation {
-            vec![VALIDATION.as_ptr()]
-        } else {
-            vec![]
-        };
-        let mut extension_names = if debug_utils {
-            vec![ext::debug_utils::NAME.as_ptr()]
-        } else {
-            vec![]
-        };
+        let layer_names = Vec::from_iter(validation.then_some(VALIDATION.as_ptr()));
+        let debug_name = debug_utils.then_some(ext::debug_utils::NAME.as_ptr());
+        let mut extension_names = Vec::from_iter(debug_name);
         let mut flags = vk::InstanceCreateFlags::empty();
         if portability {
             extension_names.push(khr::portability_enumeration::NAME.as_ptr());
@@ -272,6 +263,50 @@ fn mask_of(valid_bits: u32) -> u64 {
     u64::MAX.checked_shr(64 - valid_bits.min(64)).unwrap_or(0)
 }
 
+fn allocator(
+    instance: &ash::Instance,
+    physical_device: vk::PhysicalDevice,
+    device: &ash::Device,
+) -> Result<Allocator> {
+    Allocator::new(&AllocatorCreateDesc {
+        instance: instance.clone(),
+        device: device.clone(),
+        physical_device,
+        debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
+        buffer_device_address: false,
+        // Small blocks: software devices have one heap of 2 GiB, and large images use dedicated
+        // allocations.
+        allocation_sizes: gpu_allocator::AllocationSizes::new(32 << 20, 16 << 20),
+    })
+    .map_err(|e| VulkanError::OutOfMemory {
+        what: format!("the allocator ({e})"),
+        mib: 0.0,
+    })
+}
+
+fn text(c: &[std::ffi::c_char]) -> String {
+    let bytes = c.iter().take_while(|&&b| b != 0).map(|b| b.cast_unsigned());
+    String::from_utf8_lossy(&bytes.collect::<Vec<u8>>()).into_owned()
+}
+
+fn version_text(version: u32) -> String {
+    let (major, minor) = (
+        vk::api_version_major(version),
+        vk::api_version_minor(version),
+    );
+    format!("{major}.{minor}.{}", vk::api_version_patch(version))
+}
+
+fn kind_of(kind: vk::PhysicalDeviceType) -> &'static str {
+    match kind {
+        vk::PhysicalDeviceType::DISCRETE_GPU => "discrete",
+        vk::PhysicalDeviceType::INTEGRATED_GPU => "integrated",
+        vk::PhysicalDeviceType::VIRTUAL_GPU => "virtual",
+        vk::PhysicalDeviceType::CPU => "cpu",
+        _ => "other",
+    }
+}
+
 fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInfo {
     // SAFETY: `physical` comes from this instance; the chained structures live through the calls.
     unsafe {
@@ -290,22 +325,9 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
             .enumerate_device_extension_properties(physical)
             .unwrap_or_default();
         let memory = instance.get_physical_device_memory_properties(physical);
-        let heap = memory
-            .memory_heaps_as_slice()
-            .iter()
-            .filter(|h| h.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL))
-            .map(|h| h.size)
-            .max()
-            .unwrap_or(0);
-        let text = |c: &[std::ffi::c_char]| {
-            let bytes: Vec<u8> = c
-                .iter()
-                .take_while(|&&b| b != 0)
-                .map(|&b| b.cast_unsigned())
-                .collect();
-            String::from_utf8_lossy(&bytes).into_owned()
-        };
-        let version = core.api_version;
+        let local = |h: &&vk::MemoryHeap| h.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL);
+        let heaps = memory.memory_heaps_as_slice().iter().filter(local);
+        let (name, more) = (text(&driver.driver_name), text(&driver.driver_info));
         let families = instance.get_physical_device_queue_family_properties(physical);
         let family =
             queue_family(instance, physical).and_then(|f| families.get(f as usize).copied());
@@ -313,34 +335,16 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
         let timestamps = family.is_some_and(|f| f.timestamp_valid_bits >= 36);
         DeviceInfo {
             name: text(&core.device_name),
-            driver: format!(
-                "{} {}",
-                text(&driver.driver_name),
-                text(&driver.driver_info)
-            )
-            .trim()
-            .to_string(),
-            api: format!(
-                "{}.{}.{}",
-                vk::api_version_major(version),
-                vk::api_version_minor(version),
-                vk::api_version_patch(version)
-            ),
-            kind: match core.device_type {
-                vk::PhysicalDeviceType::DISCRETE_GPU => "discrete",
-                vk::PhysicalDeviceType::INTEGRATED_GPU => "integrated",
-                vk::PhysicalDeviceType::VIRTUAL_GPU => "virtual",
-                vk::PhysicalDeviceType::CPU => "cpu",
-                _ => "other",
-            },
+            driver: format!("{name} {more}").trim().to_string(),
+            api: version_text(core.api_version),
+            kind: kind_of(core.device_type),
             timestamp_mask: family.map_or(u64::MAX, |f| mask_of(f.timestamp_valid_bits)),
-            timestamp_ns: if timestamps {
-                f64::from(core.limits.timestamp_period)
-            } else {
-                0.0
+            timestamp_ns: match timestamps {
+                true => f64::from(core.limits.timestamp_period),
+                false => 0.0,
             },
             limits: core.limits,
-            heap,
+            heap: heaps.map(|h| h.size).max().unwrap_or(0),
             features: Features {
                 // Anisotropic filtering costs software devices seconds per frame.
                 anisotropy: have.sampler_anisotropy == vk::TRUE
@@ -513,44 +517,21 @@ impl Gpu {
         let physical = choose(&instance, options.device.as_deref())?;
         let info = describe(&instance, physical);
         let family = queue_family(&instance, physical).unwrap_or(0);
-        let device = create_device(
-            &instance,
-            physical,
-            family,
-            &info.features,
-            display.is_some(),
-        )?;
+        let presents = display.is_some();
+        let device = create_device(&instance, physical, family, &info.features, presents)?;
         // SAFETY: the family and index were used to create the device.
         let queue = unsafe { device.get_device_queue(family, 0) };
-        let allocator = Allocator::new(&AllocatorCreateDesc {
-            instance: instance.clone(),
-            device: device.clone(),
-            physical_device: physical,
-            debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
-            buffer_device_address: false,
-            // Small blocks: software devices have one heap of 2 GiB, and large images use dedicated
-            // allocations.
-            allocation_sizes: gpu_allocator::AllocationSizes::new(32 << 20, 16 << 20),
-        })
-        .map_err(|e| VulkanError::OutOfMemory {
-            what: format!("the allocator ({e})"),
-            mib: 0.0,
-        })?;
-        let cache_file = options
-            .cache
-            .as_ref()
-            .map(|dir| dir.join(format!("pipelines-{}", info.cache_key)));
-        let blob = cache_file
-            .as_deref()
-            .and_then(crate::files::read_checked)
-            .unwrap_or_default();
+        let allocator = allocator(&instance, physical, &device)?;
+        let cache = options.cache.as_ref();
+        let cache_file = cache.map(|dir| dir.join(format!("pipelines-{}", info.cache_key)));
+        let blob = cache_file.as_deref().and_then(crate::files::read_checked);
+        let blob = blob.unwrap_or_default();
         let cache_info = vk::PipelineCacheCreateInfo::default().initial_data(&blob);
         // SAFETY: the driver checks the blob's header; a checksum verified its content.
         let pipeline_cache = unsafe { device.create_pipeline_cache(&cache_info, None) }
             .map_err(VulkanError::at("create the pipeline cache"))?;
-        let patience = options
-            .patience
-            .map(|p| if info.kind == "cpu" { p * 10 } else { p });
+        let times = if info.kind == "cpu" { 10 } else { 1 };
+        let patience = options.patience.map(|p| p * times);
         let names = debug_utils.then(|| Names {
             device: ext::debug_utils::Device::new(&instance, &device),
         });

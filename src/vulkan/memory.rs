@@ -168,10 +168,8 @@ pub fn lay_together(
     resources: &mut [(Bare, u64)],
     size: u64,
 ) -> Result<()> {
-    let all: Vec<vk::MemoryRequirements> = resources
-        .iter()
-        .map(|(bare, _)| bare.requirements())
-        .collect();
+    let all = resources.iter().map(|(bare, _)| bare.requirements());
+    let all: Vec<vk::MemoryRequirements> = all.collect();
     let kinds = all.iter().fold(!0, |kinds, r| kinds & r.memory_type_bits);
     if kinds == 0 {
         return resources.iter_mut().try_for_each(|(bare, _)| match bare {
@@ -179,12 +177,11 @@ pub fn lay_together(
             Bare::Image(i) => i.take_memory(),
         });
     }
+    let granularity = gpu.info.limits.buffer_image_granularity;
     let alignment = all
         .iter()
         .map(|r| r.alignment)
-        .max()
-        .unwrap_or(1)
-        .max(gpu.info.limits.buffer_image_granularity);
+        .fold(granularity.max(1), u64::max);
     let size = size.max(1).next_multiple_of(alignment);
     let requirements = vk::MemoryRequirements {
         size,
@@ -370,10 +367,9 @@ impl Image {
     /// An image without memory, for [`lay_together`].
     pub fn bare(gpu: &Arc<Gpu>, desc: ImageDesc) -> Result<Image> {
         let limits = &gpu.info.limits;
-        let limit = if desc.volume {
-            limits.max_image_dimension3_d
-        } else {
-            limits.max_image_dimension2_d
+        let (kind, limit) = match desc.volume {
+            true => (vk::ImageType::TYPE_3D, limits.max_image_dimension3_d),
+            false => (vk::ImageType::TYPE_2D, limits.max_image_dimension2_d),
         };
         let refuse = |asked: String, limit: String| VulkanError::Limit {
             what: format!("'{}'", desc.name),
@@ -383,27 +379,17 @@ impl Image {
         };
         let [x, y, z] = desc.extent;
         if x.max(y).max(z) > limit || x.min(y).min(z) == 0 {
-            return Err(refuse(
-                format!("{x}x{y}x{z}"),
-                format!("{limit} texels a side (and at least 1)"),
-            ));
+            let limit = format!("{limit} texels a side (and at least 1)");
+            return Err(refuse(format!("{x}x{y}x{z}"), limit));
         }
-        if desc.layers > limits.max_image_array_layers {
-            return Err(refuse(
-                format!("{} layers", desc.layers),
-                limits.max_image_array_layers.to_string(),
-            ));
+        let most = limits.max_image_array_layers;
+        if desc.layers > most {
+            return Err(refuse(format!("{} layers", desc.layers), most.to_string()));
         }
-        let formats: Vec<vk::Format> = std::iter::once(desc.format)
-            .chain(desc.views.iter().copied())
-            .collect();
+        let formats = [&[desc.format], &desc.views[..]].concat();
         let mut list = vk::ImageFormatListCreateInfo::default().view_formats(&formats);
         let mut info = vk::ImageCreateInfo::default()
-            .image_type(if desc.volume {
-                vk::ImageType::TYPE_3D
-            } else {
-                vk::ImageType::TYPE_2D
-            })
+            .image_type(kind)
             .format(desc.format)
             .extent(vk::Extent3D {
                 width: x,

@@ -98,6 +98,16 @@ fn renderer_error(e: egui_ash_renderer::RendererError) -> VulkanError {
     }
 }
 
+/// Magnified pixels stay visible.
+const SAMPLER: SamplerDesc = SamplerDesc {
+    filter: vk::Filter::NEAREST,
+    mip_filter: vk::SamplerMipmapMode::NEAREST,
+    address: vk::SamplerAddressMode::CLAMP_TO_EDGE,
+    border: vk::BorderColor::FLOAT_TRANSPARENT_BLACK,
+    compare: None,
+    anisotropic: false,
+};
+
 impl Painter {
     /// A painter for a window, with a number of pictures.
     ///
@@ -136,18 +146,7 @@ impl Painter {
     }
 
     fn new(gpu: &Arc<Gpu>, target: Target, format: vk::Format, pictures: usize) -> Result<Painter> {
-        let sampler = Sampler::new(
-            gpu,
-            &SamplerDesc {
-                // Magnified pixels stay visible.
-                filter: vk::Filter::NEAREST,
-                mip_filter: vk::SamplerMipmapMode::NEAREST,
-                address: vk::SamplerAddressMode::CLAMP_TO_EDGE,
-                border: vk::BorderColor::FLOAT_TRANSPARENT_BLACK,
-                compare: None,
-                anisotropic: false,
-            },
-        )?;
+        let sampler = Sampler::new(gpu, &SAMPLER)?;
         // The layout is declared compatible with the renderer's own.
         let layout =
             vulkan::create_vulkan_descriptor_set_layout(&gpu.device).map_err(renderer_error)?;
@@ -187,12 +186,10 @@ impl Painter {
             painter.pool = d.create_descriptor_pool(&info, None).map_err(at())?;
             for _ in 0..SLOTS {
                 let commands = FrameSlot::new(gpu, 3)?;
-                let acquired = d
-                    .create_semaphore(&Default::default(), None)
-                    .map_err(at())?;
+                let acquired = d.create_semaphore(&Default::default(), None);
                 painter.slots.push(Slot {
                     commands,
-                    acquired,
+                    acquired: acquired.map_err(at())?,
                     staging: Vec::new(),
                     reads: Vec::new(),
                 });
@@ -253,6 +250,21 @@ impl Painter {
         }
     }
 
+    /// Waits for the last frame of a slot, and takes its times.
+    fn wait(&mut self, slot: usize) -> Result<()> {
+        let begun = Instant::now();
+        let ticks = self.slots[slot].commands.wait()?;
+        self.slots[slot].reads.clear();
+        self.waited_ms = begun.elapsed().as_secs_f64() * 1e3;
+        if let Some(ticks) = ticks
+            && let [a, b, c] = ticks[..]
+        {
+            let ms = |a: u64, b: u64| self.gpu.info.ms_between(a, b);
+            self.gpu_ms = (ms(a, b), ms(b, c));
+        }
+        Ok(())
+    }
+
     /// Draws and presents a frame: updates textures, copies pictures, draws. Returns `false` if
     /// there is no target (a window without area, or one that provides no image now).
     pub fn paint(
@@ -264,16 +276,7 @@ impl Painter {
         pixels: &[Pixels<'_>],
     ) -> Result<bool> {
         let slot = self.frame % SLOTS;
-        let begun = Instant::now();
-        let ticks = self.slots[slot].commands.wait()?;
-        self.slots[slot].reads.clear();
-        self.waited_ms = begun.elapsed().as_secs_f64() * 1e3;
-        if let Some(ticks) = ticks
-            && let [a, b, c] = ticks[..]
-        {
-            let ms = |a: u64, b: u64| self.gpu.info.ms_between(a, b);
-            self.gpu_ms = (ms(a, b), ms(b, c));
-        }
+        self.wait(slot)?;
         self.change_textures(&mut textures)?;
         for p in pixels {
             self.fit_picture(p)?;
@@ -283,36 +286,22 @@ impl Painter {
             return Ok(false);
         };
         self.stage(pixels)?;
-        let Painter {
-            slots,
-            renderer,
-            pictures,
-            gpu,
-            ..
-        } = self;
-        let Some(renderer) = renderer else {
+        let Some(renderer) = &mut self.renderer else {
             return Ok(false);
         };
-        let Slot {
-            commands,
-            acquired,
-            staging,
-            reads,
-        } = &mut slots[slot];
+        let (gpu, pictures, slot) = (&self.gpu, &mut self.pictures, &mut self.slots[slot]);
+        let (staging, reads) = (&mut slot.staging, &mut slot.reads);
         let mut result = Ok(());
-        let semaphores = target.drawn.map(|drawn| (*acquired, drawn));
-        commands.submit_between(semaphores, |commands| {
+        let semaphores = target.drawn.map(|drawn| (slot.acquired, drawn));
+        slot.commands.submit_between(semaphores, |commands| {
             commands.timestamp();
             refill_pictures(commands, pictures, pixels, staging, reads);
             commands.timestamp();
-            commands.attach(
-                target.image,
-                vk::ImageLayout::UNDEFINED,
-                vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
-            );
+            let drawn = vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL;
+            commands.attach(target.image, vk::ImageLayout::UNDEFINED, drawn);
             let color = [vk::RenderingAttachmentInfo::default()
                 .image_view(target.view)
-                .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
+                .image_layout(drawn)
                 .load_op(vk::AttachmentLoadOp::CLEAR)
                 .store_op(vk::AttachmentStoreOp::STORE)];
             let info = vk::RenderingInfo::default()
@@ -325,12 +314,11 @@ impl Painter {
             result = renderer.cmd_draw(commands.handle, target.extent, scale, primitives);
             // SAFETY: as above.
             unsafe { gpu.device.cmd_end_rendering(commands.handle) };
-            let end = if target.drawn.is_some() {
-                vk::ImageLayout::PRESENT_SRC_KHR
-            } else {
-                vk::ImageLayout::TRANSFER_SRC_OPTIMAL
+            let end = match target.drawn {
+                Some(_) => vk::ImageLayout::PRESENT_SRC_KHR,
+                None => vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
             };
-            commands.attach(target.image, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, end);
+            commands.attach(target.image, drawn, end);
             commands.timestamp();
         })?;
         result.map_err(renderer_error)?;

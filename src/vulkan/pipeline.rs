@@ -186,89 +186,78 @@ pub struct Pipeline {
 }
 
 impl Pipeline {
+    /// Makes the layout of bindings and push constants.
+    fn make_layout(&mut self, desc: &PipelineDesc) -> Result<()> {
+        let binding = |b: &BindingDesc| {
+            vk::DescriptorSetLayoutBinding::default()
+                .binding(b.binding)
+                .descriptor_type(b.kind)
+                .descriptor_count(1)
+                .stage_flags(b.stage.flag())
+        };
+        let bindings: Vec<_> = desc.bindings.iter().map(binding).collect();
+        let at = |what: &str| VulkanError::at(format!("{what} of pass '{}'", desc.name));
+        let device = &self.gpu.device;
+        // SAFETY: the structures outlive the creation calls; `drop` destroys the handles, null or
+        // not.
+        unsafe {
+            let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+            let layout = device.create_descriptor_set_layout(&info, None);
+            self.set_layout = layout.map_err(at("create the bindings"))?;
+            let sets = [self.set_layout];
+            let ranges = [vk::PushConstantRange::default()
+                .stage_flags(self.push_stages)
+                .size(desc.push_bytes)];
+            let mut info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
+            if desc.push_bytes > 0 {
+                info = info.push_constant_ranges(&ranges);
+            }
+            let layout = device.create_pipeline_layout(&info, None);
+            self.layout = layout.map_err(at("create the layout"))?;
+        }
+        Ok(())
+    }
+
     /// Makes a pipeline.
     pub fn new(gpu: &Arc<Gpu>, desc: &PipelineDesc) -> Result<Pipeline> {
-        let bindings: Vec<_> = desc
-            .bindings
-            .iter()
-            .map(|b| {
-                vk::DescriptorSetLayoutBinding::default()
-                    .binding(b.binding)
-                    .descriptor_type(b.kind)
-                    .descriptor_count(1)
-                    .stage_flags(b.stage.flag())
-            })
-            .collect();
-        let push_stages = desc
-            .stages
-            .iter()
-            .fold(vk::ShaderStageFlags::empty(), |a, s| a | s.stage.flag());
+        let flags = desc.stages.iter().map(|s| s.stage.flag());
+        let push_stages = flags.fold(vk::ShaderStageFlags::empty(), |a, flag| a | flag);
         let at = |what: &str| VulkanError::at(format!("{what} of pass '{}'", desc.name));
         let mut pipeline = Pipeline {
             gpu: gpu.clone(),
             handle: vk::Pipeline::null(),
             layout: vk::PipelineLayout::null(),
             set_layout: vk::DescriptorSetLayout::null(),
-            point: if desc.draw.is_some() {
-                vk::PipelineBindPoint::GRAPHICS
-            } else {
-                vk::PipelineBindPoint::COMPUTE
+            point: match desc.draw {
+                Some(_) => vk::PipelineBindPoint::GRAPHICS,
+                None => vk::PipelineBindPoint::COMPUTE,
             },
             push_stages,
         };
-        // SAFETY: the structures outlive the creation calls; `drop` destroys the handles, null or
-        // not.
-        unsafe {
-            let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-            pipeline.set_layout = gpu
-                .device
-                .create_descriptor_set_layout(&info, None)
-                .map_err(at("create the bindings"))?;
-            let sets = [pipeline.set_layout];
-            let ranges = [vk::PushConstantRange::default()
-                .stage_flags(push_stages)
-                .size(desc.push_bytes)];
-            let mut info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
-            if desc.push_bytes > 0 {
-                info = info.push_constant_ranges(&ranges);
-            }
-            pipeline.layout = gpu
-                .device
-                .create_pipeline_layout(&info, None)
-                .map_err(at("create the layout"))?;
-        }
+        pipeline.make_layout(desc)?;
         let modules = Modules::new(gpu, desc)?;
         let constants: Vec<(Vec<vk::SpecializationMapEntry>, Vec<u8>)> =
             desc.stages.iter().map(pack_constants).collect();
-        let specials: Vec<_> = constants
-            .iter()
-            .map(|(entries, data)| {
-                vk::SpecializationInfo::default()
-                    .map_entries(entries)
-                    .data(data)
-            })
+        let special = vk::SpecializationInfo::default();
+        let specials = constants.iter();
+        let specials: Vec<_> = specials
+            .map(|(entries, data)| special.map_entries(entries).data(data))
             .collect();
         let entry = CString::from(c"main");
-        let stages: Vec<_> = desc
-            .stages
-            .iter()
-            .zip(&modules.handles)
-            .zip(&specials)
-            .map(|((stage, module), special)| {
-                vk::PipelineShaderStageCreateInfo::default()
-                    .stage(stage.stage.flag())
-                    .module(*module)
-                    .name(&entry)
-                    .specialization_info(special)
-            })
-            .collect();
-        pipeline.handle = match &desc.draw {
-            None => compute(gpu, pipeline.layout, &stages),
-            Some((state, attachments)) => {
-                graphics(gpu, pipeline.layout, &stages, state, attachments)
-            }
-        }
-        .map_err(at("create the pipeline"))?;
+        let stages = desc.stages.iter().zip(&modules.handles).zip(&specials);
+        let stages = stages.map(|((stage, module), special)| {
+            vk::PipelineShaderStageCreateInfo::default()
+                .stage(stage.stage.flag())
+                .module(*module)
+                .name(&entry)
+                .specialization_info(special)
+        });
+        let (layout, stages) = (pipeline.layout, stages.collect::<Vec<_>>());
+        let handle = match &desc.draw {
+            None => compute(gpu, layout, &stages),
+            Some((state, attachments)) => graphics(gpu, layout, &stages, state, attachments),
+        };
+        pipeline.handle = handle.map_err(at("create the pipeline"))?;
         gpu.name(pipeline.handle, &desc.name);
         Ok(pipeline)
     }
@@ -346,6 +335,18 @@ fn compute(
     made.map(|p| p[0]).map_err(|(_, code)| code)
 }
 
+impl DrawState {
+    fn raster(&self) -> vk::PipelineRasterizationStateCreateInfo<'static> {
+        vk::PipelineRasterizationStateCreateInfo::default()
+            .polygon_mode(vk::PolygonMode::FILL)
+            .cull_mode(self.cull)
+            .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
+            .depth_clamp_enable(self.depth_clamp)
+            .rasterizer_discard_enable(self.discard)
+            .line_width(1.0)
+    }
+}
+
 fn graphics(
     gpu: &Gpu,
     layout: vk::PipelineLayout,
@@ -361,13 +362,7 @@ fn graphics(
         .scissor_count(1);
     let mut conservative = vk::PipelineRasterizationConservativeStateCreateInfoEXT::default()
         .conservative_rasterization_mode(vk::ConservativeRasterizationModeEXT::OVERESTIMATE);
-    let mut raster = vk::PipelineRasterizationStateCreateInfo::default()
-        .polygon_mode(vk::PolygonMode::FILL)
-        .cull_mode(state.cull)
-        .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
-        .depth_clamp_enable(state.depth_clamp)
-        .rasterizer_discard_enable(state.discard)
-        .line_width(1.0);
+    let mut raster = state.raster();
     if state.conservative {
         raster = raster.push_next(&mut conservative);
     }
@@ -378,15 +373,12 @@ fn graphics(
         .depth_write_enable(state.depth_write)
         .depth_compare_op(state.depth_test.unwrap_or(vk::CompareOp::ALWAYS));
     // Unused attachments have no blend state.
-    let blends: Vec<_> = state
-        .blend
-        .iter()
-        .zip(&attachments.color)
-        .map(|(blend, format)| match *format {
-            vk::Format::UNDEFINED => vk::PipelineColorBlendAttachmentState::default(),
-            _ => blend.state(),
-        })
-        .collect();
+    let blends = state.blend.iter().zip(&attachments.color);
+    let blends = blends.map(|(blend, format)| match *format {
+        vk::Format::UNDEFINED => vk::PipelineColorBlendAttachmentState::default(),
+        _ => blend.state(),
+    });
+    let blends: Vec<_> = blends.collect();
     let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
     let dynamic_states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
     let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);
@@ -408,8 +400,8 @@ fn graphics(
         .push_next(&mut rendering)];
     // SAFETY: layout and modules are alive; all state outlives the call.
     let made = unsafe {
-        gpu.device
-            .create_graphics_pipelines(gpu.pipeline_cache, &info, None)
+        let cache = gpu.pipeline_cache;
+        gpu.device.create_graphics_pipelines(cache, &info, None)
     };
     made.map(|p| p[0]).map_err(|(_, code)| code)
 }

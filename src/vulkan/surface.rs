@@ -85,62 +85,54 @@ pub(super) struct Swapchain {
 }
 
 impl Swapchain {
+    /// Makes views and semaphores of the images.
+    fn fill(&mut self) -> std::result::Result<(), vk::Result> {
+        // SAFETY: the objects belong to this device; `drop` destroys them.
+        unsafe {
+            self.images = self.loader.get_swapchain_images(self.handle)?;
+            for image in &self.images {
+                let info = vk::ImageViewCreateInfo::default()
+                    .image(*image)
+                    .view_type(vk::ImageViewType::TYPE_2D)
+                    .format(self.format)
+                    .subresource_range(WHOLE);
+                let device = &self.gpu.device;
+                self.views.push(device.create_image_view(&info, None)?);
+                let semaphore = device.create_semaphore(&Default::default(), None)?;
+                self.drawn.push(semaphore);
+            }
+        }
+        Ok(())
+    }
+
     /// Images for a surface size; `None` if the window has no area.
     pub fn new(gpu: &Arc<Gpu>, surface: &Surface, size: (u32, u32)) -> Result<Option<Swapchain>> {
         let at = || VulkanError::at("make the window's images");
         // SAFETY: device and surface belong to one instance; `drop` destroys the created objects.
         unsafe {
             let physical = gpu.physical;
-            let can = surface
-                .loader
-                .get_physical_device_surface_capabilities(physical, surface.handle)
-                .map_err(at())?;
-            let formats = surface
-                .loader
-                .get_physical_device_surface_formats(physical, surface.handle)
-                .map_err(at())?;
-            // sRGB formats preserve pictures. Without them the painter encodes itself, with an
-            // error of a few steps of 255.
-            let wanted = [
-                vk::Format::B8G8R8A8_SRGB,
-                vk::Format::R8G8B8A8_SRGB,
-                vk::Format::B8G8R8A8_UNORM,
-                vk::Format::R8G8B8A8_UNORM,
-            ];
-            let format = wanted
-                .iter()
-                .find_map(|w| formats.iter().find(|f| f.format == *w))
-                .or(formats.first())
-                .copied()
+            let (loader, handle) = (&surface.loader, surface.handle);
+            let can = loader.get_physical_device_surface_capabilities(physical, handle);
+            let can = can.map_err(at())?;
+            let formats = loader.get_physical_device_surface_formats(physical, handle);
+            let format = format_of(&formats.map_err(at())?)
                 .ok_or_else(|| VulkanError::CannotPresent(gpu.info.name.clone()))?;
-            // Wayland leaves the size to the program.
-            let extent = if can.current_extent.width == u32::MAX {
-                vk::Extent2D {
-                    width: size
-                        .0
-                        .clamp(can.min_image_extent.width, can.max_image_extent.width),
-                    height: size
-                        .1
-                        .clamp(can.min_image_extent.height, can.max_image_extent.height),
-                }
-            } else {
-                can.current_extent
-            };
-            if extent.width == 0 || extent.height == 0 || size.0 == 0 || size.1 == 0 {
+            let extent = extent_of(&can, size);
+            if [extent.width, extent.height, size.0, size.1].contains(&0) {
                 return Ok(None);
             }
-            let most = if can.max_image_count == 0 {
-                u32::MAX
-            } else {
-                can.max_image_count
+            let most = match can.max_image_count {
+                0 => u32::MAX,
+                most => most,
             };
-            let alpha = [
-                vk::CompositeAlphaFlagsKHR::OPAQUE,
-                vk::CompositeAlphaFlagsKHR::INHERIT,
-            ]
-            .into_iter()
-            .find(|a| can.supported_composite_alpha.contains(*a))
-            .unwrap_or(vk::CompositeAlphaFlagsKHR::OPAQUE);
+            type Alpha = vk::CompositeAlphaFlagsKHR;
+            let have = can.supported_composite_alpha;
+            let inherits = have.contains(Alpha::INHERIT) && !have.contains(Alpha::OPAQUE);
+            let alpha = if inherits {
+                Alpha::INHERIT
+            } else {
+                Alpha::OPAQUE
+            };
             let info = vk::SwapchainCreateInfoKHR::default()
                 .surface(surface.handle)
                 .min_image_count((can.min_image_count + 1).min(most))
@@ -165,21 +157,7 @@ impl Swapchain {
                 views: Vec::new(),
                 drawn: Vec::new(),
             };
-            made.images = made.loader.get_swapchain_images(handle).map_err(at())?;
-            for image in &made.images {
-                let info = vk::ImageViewCreateInfo::default()
-                    .image(*image)
-                    .view_type(vk::ImageViewType::TYPE_2D)
-                    .format(made.format)
-                    .subresource_range(WHOLE);
-                made.views
-                    .push(gpu.device.create_image_view(&info, None).map_err(at())?);
-                made.drawn.push(
-                    gpu.device
-                        .create_semaphore(&Default::default(), None)
-                        .map_err(at())?,
-                );
-            }
+            made.fill().map_err(at())?;
             Ok(Some(made))
         }
     }
@@ -207,5 +185,31 @@ impl Drop for Swapchain {
             }
             self.loader.destroy_swapchain(self.handle, None);
         }
+    }
+}
+
+/// sRGB formats preserve pictures. Without them the painter encodes itself, with an error of a few
+/// steps of 255.
+fn format_of(formats: &[vk::SurfaceFormatKHR]) -> Option<vk::SurfaceFormatKHR> {
+    let wanted = [
+        vk::Format::B8G8R8A8_SRGB,
+        vk::Format::R8G8B8A8_SRGB,
+        vk::Format::B8G8R8A8_UNORM,
+        vk::Format::R8G8B8A8_UNORM,
+    ];
+    let mut found = wanted.iter();
+    let found = found.find_map(|w| formats.iter().find(|f| f.format == *w));
+    found.or(formats.first()).copied()
+}
+
+/// Wayland leaves the size to the program.
+fn extent_of(can: &vk::SurfaceCapabilitiesKHR, size: (u32, u32)) -> vk::Extent2D {
+    let (least, most) = (can.min_image_extent, can.max_image_extent);
+    match can.current_extent.width == u32::MAX {
+        true => vk::Extent2D {
+            width: size.0.clamp(least.width, most.width),
+            height: size.1.clamp(least.height, most.height),
+        },
+        false => can.current_extent,
     }
 }
