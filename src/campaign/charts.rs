@@ -1,5 +1,6 @@
 //! Charts as SVG.
 
+use crate::diagnostics::excerpt::cut;
 use crate::lab::LabError;
 use crate::results::table::short;
 use indexmap::IndexSet;
@@ -78,14 +79,6 @@ pub fn file_name(name: &str) -> String {
 /// Style of a text of this size, pixels.
 pub fn text(size: i32, h: HPos, v: VPos) -> TextStyle<'static> {
     TextStyle::from((FONT, size)).pos(Pos::new(h, v))
-}
-
-/// The text, cut to a number of characters.
-pub fn cut(text: &str, most: usize) -> String {
-    match text.chars().count() <= most {
-        true => text.to_string(),
-        false => text.chars().take(most - 1).chain(['…']).collect(),
-    }
 }
 
 /// An axis, linear or logarithmic.

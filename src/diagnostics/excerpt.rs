@@ -26,6 +26,14 @@ pub fn excerpt(text: &str, most: usize) -> String {
     out
 }
 
+/// The text, cut to a number of characters.
+pub fn cut(text: &str, most: usize) -> String {
+    match text.chars().count() <= most {
+        true => text.to_string(),
+        false => text.chars().take(most - 1).chain(['…']).collect(),
+    }
+}
+
 /// At most `most` characters of a line around a column (from 1; 0 if unknown).
 pub fn excerpt_at(line: &str, column: usize, most: usize) -> String {
     let first = if column + 20 > most {

@@ -32,7 +32,7 @@ pub struct Exposures {
 
 /// The exposures for a reference. Medians are at least 1.2e-7; a black reference has exposure 0.
 pub fn exposures(reference: &[[f32; 3]]) -> Exposures {
-    let mut values: Vec<f64> = reference.iter().map(|c| luminance(*c)).collect();
+    let values: Vec<f64> = reference.iter().map(|c| luminance(*c)).collect();
     let brightest = values.iter().copied().fold(0.0, f64::max);
     if brightest <= 0.0 {
         return Exposures {
@@ -41,8 +41,7 @@ pub fn exposures(reference: &[[f32; 3]]) -> Exposures {
             count: 1,
         };
     }
-    let middle = values.len() / 2;
-    let median = *values.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let median = super::median(values);
     let (a, b, c) = (
         ACES[0] - TARGET * ACES[2],
         ACES[1] - TARGET * ACES[3],

@@ -6,10 +6,12 @@ pub(crate) mod flip;
 pub(crate) mod hdr_flip;
 pub(crate) mod maps;
 mod means;
+mod rank;
 pub(crate) mod region;
 mod structure;
 mod table;
 
+pub(crate) use rank::{median, percentile};
 pub use structure::{structure, structure_noise};
 pub(crate) use table::{Best, Metric, RELMSE};
 pub use table::{METRICS, Noise, Scores};

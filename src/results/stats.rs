@@ -3,6 +3,7 @@
 use crate::graph::param::{OFF, Params};
 use crate::graph::run::{Execution, FrameTimes};
 use crate::lab::Session;
+use crate::metrics::percentile;
 use crate::results::table::Table;
 use crate::vulkan::DeviceInfo;
 use serde::{Deserialize, Serialize};
@@ -95,16 +96,8 @@ pub struct Stats {
 
 /// Minimum, median and 95th percentile (nearest rank).
 pub fn spread(mut values: Vec<f64>) -> Spread {
-    values.sort_by(f64::total_cmp);
-    let rank = |q: f64| {
-        let i = (q * values.len() as f64).ceil() as usize;
-        values.get(i.saturating_sub(1)).copied().unwrap_or(0.0)
-    };
-    Spread {
-        min: values.first().copied().unwrap_or(0.0),
-        median: rank(0.5),
-        p95: rank(0.95),
-    }
+    let [min, median, p95] = [0.0, 0.5, 0.95].map(|part| percentile(&mut values, part));
+    Spread { min, median, p95 }
 }
 
 /// The measurements of a session.

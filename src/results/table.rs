@@ -161,3 +161,15 @@ pub fn short(v: f64) -> String {
         _ => format!("{}", format!("{v:.2e}").parse::<f64>().unwrap_or(v)),
     }
 }
+
+/// A number with four digits; `-` if it is not finite.
+pub fn four_digits(v: f64) -> String {
+    match v.abs() {
+        a if a.is_nan() => "-".into(),
+        0.0 => "0".into(),
+        a if !(1e-3..1e4).contains(&a) => format!("{v:.2e}"),
+        a if a < 10.0 => format!("{v:.4}"),
+        a if a < 1000.0 => format!("{v:.2}"),
+        _ => format!("{v:.0}"),
+    }
+}

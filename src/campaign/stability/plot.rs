@@ -2,8 +2,9 @@
 
 use super::chart_spec::CostChart;
 use super::record::{Cost, PartResult, Report};
-use crate::campaign::charts::{Area, Axis, Failure, color, cut, drawn, plane, text};
+use crate::campaign::charts::{Area, Axis, Failure, color, drawn, plane, text};
 use crate::campaign::page::figure;
+use crate::diagnostics::excerpt::cut;
 use crate::lab::LabError;
 use crate::metrics::{NOISE_FACTOR, RELMSE, within_noise};
 use crate::results::table::{Table, cell, mebibytes, number, shortly};

@@ -1,10 +1,10 @@
 //! Files of a suite: `results/ID.json` for each finished method in a case, and `stability.json` for
 //! all of them.
 
-use super::score::{Change, Flicker, Step, median};
+use super::score::{Change, Flicker, Step};
 use crate::campaign::record::{Folder, Record};
 use crate::measure::oracle::Score;
-use crate::metrics::{Noise, Scores};
+use crate::metrics::{Noise, Scores, median};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Definitions of the scores; docs/stability.md has their sources.
 
-use crate::metrics::Linear;
 use crate::metrics::colour::{display, luminance};
+use crate::metrics::{Linear, percentile};
 use serde::{Deserialize, Serialize};
 
 /// Largest deviation that counts as the final value after a step, relative to the step.
@@ -51,15 +51,6 @@ pub fn change(x: [&Linear; 2], r: Option<[&Linear; 2]>) -> Change {
         p999: percentile(&mut errors, 0.999),
         jump: jump * 255.0,
     }
-}
-
-/// Percentile by nearest rank, 0 without values.
-pub(super) fn percentile(values: &mut [f64], part: f64) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let rank = ((part * values.len() as f64).ceil() as usize).clamp(1, values.len());
-    *values.select_nth_unstable_by(rank - 1, f64::total_cmp).1
 }
 
 /// Flicker index over the frames of a sequence (IES Lighting Handbook): area above the mean over
@@ -176,10 +167,4 @@ pub fn settling(errors: &[f64], at: usize) -> Option<usize> {
     let within = |e: f64, part: f64| (e - last).abs() <= part * last;
     let late = after.iter().rposition(|e| !within(*e, SETTLED));
     within(after[after.len() - 2], AT_REST).then(|| late.map_or(1, |l| l + 2))
-}
-
-/// The median. For an even number of values, the upper one of the middle two.
-pub(super) fn median(mut list: Vec<f64>) -> f64 {
-    list.sort_by(f64::total_cmp);
-    list.get(list.len() / 2).copied().unwrap_or(0.0)
 }

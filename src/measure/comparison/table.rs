@@ -2,7 +2,7 @@
 
 use super::{Comparison, PartComparison, RegionComparison};
 use crate::metrics::{METRICS, Metric, Scores};
-use crate::results::table::Table;
+use crate::results::table::{Table, four_digits};
 use std::fmt::Write as _;
 
 const LETTERS: [&str; 2] = ["A", "B"];
@@ -36,7 +36,7 @@ fn block(out: &mut String, part: &PartComparison, pictures: &[String]) {
     }
     let _ = write!(out, "\n{}", table.text());
     if let (Some(relmse), Some(structure)) = (part.noise, part.structure_noise) {
-        let (relmse, structure) = (short(relmse), short(structure));
+        let (relmse, structure) = (four_digits(relmse), four_digits(structure));
         let _ = writeln!(
             out,
             "  noise of the reference: relMSE {relmse}, structure {structure}"
@@ -70,7 +70,7 @@ fn lines(region: &RegionComparison) -> Vec<Line> {
     };
     let mut lines: Vec<Line> = Vec::new();
     for (letter, scores) in LETTERS.iter().zip(&region.scores) {
-        let cells = |s: &Scores| columns().map(|(m, _)| short(s.get(m.key))).collect();
+        let cells = |s: &Scores| columns().map(|(m, _)| four_digits(s.get(m.key))).collect();
         let cells = scores.as_ref().map_or(Vec::new(), cells);
         lines.push((std::mem::take(&mut title), letter, cells));
     }
@@ -87,16 +87,4 @@ fn lines(region: &RegionComparison) -> Vec<Line> {
 /// The metrics with a column, and its heading.
 fn columns() -> impl Iterator<Item = (&'static Metric, &'static str)> {
     METRICS.iter().filter_map(|m| Some((m, m.head?)))
-}
-
-/// A number with four digits; `-` if it is not finite.
-fn short(v: f64) -> String {
-    match v.abs() {
-        a if a.is_nan() => "-".into(),
-        0.0 => "0".into(),
-        a if !(1e-3..1e4).contains(&a) => format!("{v:.2e}"),
-        a if a < 10.0 => format!("{v:.4}"),
-        a if a < 1000.0 => format!("{v:.2}"),
-        _ => format!("{v:.0}"),
-    }
 }
