@@ -35,8 +35,8 @@ pub fn summary(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> String {
         let name = |i: &usize| graph.pass_name(plan.steps[*i].pass);
         let mut passes: Vec<&str> = settling.steps.iter().map(name).collect();
         passes.dedup();
-        let title = format!("after {} still frames rest", settling.frames);
-        list(&mut out, &title, &passes);
+        let (frames, passes) = (settling.frames, passes.join(", "));
+        let _ = writeln!(out, "after {frames} still frames rest: {passes}");
     }
     let files = graph.modules.iter();
     let files = files.map(|(name, file)| (name.as_str(), file.as_str()));
@@ -59,11 +59,8 @@ pub fn summary(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> String {
     let largest: Vec<_> = largest
         .map(|(name, bytes)| format!("{name} {:.1}", mib(*bytes)))
         .collect();
-    list(
-        &mut out,
-        &format!("memory: {total:.1} MiB; the largest"),
-        &largest,
-    );
+    let largest = largest.join(", ");
+    let _ = writeln!(out, "memory: {total:.1} MiB; the largest: {largest}");
     let dropped = plan.dropped.iter().map(|(pass, _)| graph.pass_name(*pass));
     let dropped: Vec<&str> = dropped.collect();
     list(&mut out, "left out (--barriers prints why)", &dropped);

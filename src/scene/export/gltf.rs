@@ -54,9 +54,9 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
         "cameras": scene.cameras.iter().map(|(name, c)| lens(name, c)).collect::<Vec<_>>(),
         "accessors": writer.accessors,
         "bufferViews": writer.views,
-        "animations": animations,
         "extensionsUsed": extensions_used(scene),
         "extensions": of_lights,
+        "animations": animations,
     });
     // glTF forbids empty arrays.
     if let Some(root) = root.as_object_mut() {
