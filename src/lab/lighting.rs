@@ -1,6 +1,7 @@
 //! The present lighting of a scene on the device.
 
-use super::interface::blocks::{LightBlock, SceneInfoBlock, ShadowBlock};
+use super::interface::blocks::SceneInfoBlock;
+use super::shape::count;
 use super::sky;
 use super::view::lights;
 use crate::scene::{Environment, Light, Scene};
@@ -28,27 +29,32 @@ impl Lighting {
         }
     }
 
-    /// The lights' blocks and shadow views, that of the sky's sun last.
-    pub fn blocks(
+    /// Content of every buffer that depends on the lighting, by name, with the sky's sun as the
+    /// last light; and `sceneInfo` with the members that depend on it.
+    pub fn contents(
         &self,
+        info: SceneInfoBlock,
         bounds: (Vec3, Vec3),
         origin: Vec3,
-    ) -> (Vec<LightBlock>, Vec<ShadowBlock>) {
+    ) -> (SceneInfoBlock, [(&'static str, Vec<u8>); 2]) {
         let sun = self
             .environment
             .as_ref()
             .and_then(|e| e.sun(self.sky, e.rotation));
         let all: Vec<Light> = self.lights.iter().cloned().chain(sun).collect();
-        lights((&all, self.lights.len()), bounds, origin)
-    }
-
-    /// The part of `sceneInfo` that changes with it.
-    pub fn inform(&self, info: SceneInfoBlock) -> SceneInfoBlock {
+        let (lights, shadows) = lights((&all, self.lights.len()), bounds, origin);
         let rotation = self.environment.as_ref().map(|e| e.rotation);
-        SceneInfoBlock {
+        let info = SceneInfoBlock {
+            light_count: count(lights.len()),
+            shadow_views: count(shadows.len()),
             sky: (self.sky * self.sky_scale).to_array(),
             sky_turn: sky::turn_of(rotation),
             ..info
-        }
+        };
+        let buffers = [
+            ("lights", bytemuck::cast_slice(&lights).to_vec()),
+            ("shadowViews", bytemuck::cast_slice(&shadows).to_vec()),
+        ];
+        (info, buffers)
     }
 }

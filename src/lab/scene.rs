@@ -59,12 +59,7 @@ impl Own {
         rays: bool,
     ) -> Result<Own> {
         let lighting = Lighting::of(scene);
-        let (lights, shadows) = lighting.blocks(bounds, origin);
-        let info = lighting.inform(SceneInfoBlock {
-            light_count: count(lights.len()),
-            shadow_views: count(shadows.len()),
-            ..info
-        });
+        let (info, lit) = lighting.contents(info, bounds, origin);
         let sent = instances(scene, origin, 0.0, None, false);
         let mut buffers = Buffers::new();
         let mut add = |name, bytes: &[u8], usage| -> Result<()> {
@@ -73,8 +68,9 @@ impl Own {
         };
         add("camera", &[0; size_of::<CameraBlock>()], UNIFORM)?;
         add("sceneInfo", bytemuck::bytes_of(&info), UNIFORM)?;
-        add("lights", bytemuck::cast_slice(&lights), STORAGE)?;
-        add("shadowViews", bytemuck::cast_slice(&shadows), STORAGE)?;
+        for (name, bytes) in &lit {
+            add(name, bytes, STORAGE)?;
+        }
         add("instances", bytemuck::cast_slice(&sent), STORAGE)?;
         add("emitters", &emitters.buffer(&sent, None), STORAGE)?;
         if let Some(shape) = shape.filter(|_| !scene.deformers.is_empty()) {
@@ -312,14 +308,10 @@ impl SceneGpu {
     }
 
     fn relit(&mut self) -> Vec<Update> {
-        let lighting = &self.own.lighting;
-        let (lights, shadows) = lighting.blocks(self.bounds, self.origin);
-        self.own.info = lighting.inform(self.own.info);
-        let contents = [
-            ("lights", bytemuck::cast_slice(&lights).to_vec()),
-            ("shadowViews", bytemuck::cast_slice(&shadows).to_vec()),
-        ];
-        let changed = contents
+        let own = &mut self.own;
+        let (info, lit) = own.lighting.contents(own.info, self.bounds, self.origin);
+        own.info = info;
+        let changed = lit
             .into_iter()
             .filter_map(|(name, bytes)| self.update(name, bytes));
         changed.chain(self.info()).collect()
