@@ -138,7 +138,17 @@ pub(crate) const KINDS: [Kind; 5] = [
     ),
 ];
 
-const KIND_NAMES: [&str; KINDS.len()] = ["Directional", "Point", "Spot", "Rectangle", "Disc"];
+/// Names of [`KINDS`], in their order.
+static KIND_NAMES: [&str; KINDS.len()] = {
+    let mut names = [""; KINDS.len()];
+    let mut i = 0;
+    while i < KINDS.len() {
+        assert!(KINDS[i].template.index() == i, "a row is out of order");
+        names[i] = KINDS[i].name;
+        i += 1;
+    }
+    names
+};
 
 /// Quantity of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -234,7 +244,7 @@ impl Quantity {
 
 impl LightKind {
     /// Its number in shaders.
-    pub(crate) fn index(self) -> usize {
+    pub(crate) const fn index(self) -> usize {
         match self {
             LightKind::Directional => 0,
             LightKind::Point => 1,
