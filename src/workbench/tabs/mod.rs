@@ -81,6 +81,7 @@ pub(crate) const TABS: [Entry; 8] = [
 ];
 
 /// The open tab, and the state of each.
+#[derive(Default)]
 pub(crate) struct Tabs {
     pub(crate) open: Entry,
     pub(crate) surroundings: surroundings::Surroundings,
@@ -93,19 +94,9 @@ pub(crate) struct Tabs {
     pub(crate) gallery: gallery::Gallery,
 }
 
-impl Default for Tabs {
-    fn default() -> Tabs {
-        Tabs {
-            open: TABS[0],
-            surroundings: Default::default(),
-            times: Default::default(),
-            chart: Default::default(),
-            nodes: Default::default(),
-            inspector: Default::default(),
-            tables: Default::default(),
-            paths: Default::default(),
-            gallery: Default::default(),
-        }
+impl Default for Entry {
+    fn default() -> Entry {
+        TABS[0]
     }
 }
 
