@@ -20,12 +20,13 @@ struct Light {
     uint of_sky; // 1: represents a part of the sky image
     vec3 side; // half extent of a rectangle or disc
     float cos_inner;
-    vec3 top; // half extent, at right angles to `side` and `direction`
+    vec3 top; // half extent, along cross(side, direction): form factors of the other orientation are negative
     float cos_outer;
 };
 
 layout(std430) readonly buffer Lights { Light lights[]; } lights;
 
+// Kinds with an extent follow the others.
 bool isArea(Light light) {
     return light.kind >= LIGHT_RECTANGLE;
 }
