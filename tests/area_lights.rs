@@ -169,8 +169,20 @@ fn error(found: &[f64], expected: &[f64]) -> f64 {
     difference.sum::<f64>() / expected.iter().sum::<f64>()
 }
 
-fn ratio(found: &[f64], expected: &[f64]) -> f64 {
-    found.iter().sum::<f64>() / expected.iter().sum::<f64>()
+/// Difference of the sums in standard errors, if the noise of pixels is independent.
+fn bias(found: &[f64], expected: &[f64]) -> f64 {
+    let differences = found.iter().zip(expected).map(|(a, b)| a - b);
+    let square: f64 = differences.clone().map(|d| d * d).sum();
+    differences.sum::<f64>().abs() / square.sqrt()
+}
+
+/// A reference is noisy, but not wrong on average.
+fn assert_unbiased(what: &str, reference: &[f64], expected: &[f64]) {
+    let bias = bias(reference, expected);
+    assert!(
+        bias < 4.0,
+        "{what}: the reference's sum is off by {bias} standard errors"
+    );
 }
 
 const PANEL: LightKind = LightKind::Rectangle {
@@ -199,17 +211,12 @@ fn matte_floors_reflect_the_form_factor() {
         let expected = integrated(&light, ABOVE, 200, |_, _| 0.5 / PI, |_, _| true);
         let (method, reference) = (by_method(&scene, ABOVE), by_reference(&scene, ABOVE));
         let (a, b) = (error(&method, &expected), error(&reference, &expected));
-        let whole = ratio(&reference, &expected);
-        println!("{kind:?} at {position}: method {a:.4}, reference {b:.4}, its sum {whole:.4}");
-        assert!(
-            a < 0.006,
-            "{kind:?} at {position}: the method is off by {a}"
-        );
-        // A reference is noisy, but not wrong on average.
-        assert!(
-            (whole - 1.0).abs() < 0.015,
-            "{kind:?} at {position}: the reference sums to {whole}"
-        );
+        let what = format!("{kind:?} at {position}");
+        println!("{what}: method {a:.4}, reference {b:.4}");
+        // The 16 edges of a disc show where the floor cuts it.
+        let most = if kind == DISC { 0.01 } else { 0.001 };
+        assert!(a < most, "{what}: the method is off by {a}");
+        assert_unbiased(&what, &reference, &expected);
     }
 }
 
@@ -251,22 +258,10 @@ fn lobes_reflect_lights_as_integrals_of_the_brdf_do() {
         let expected = integrated(&light, eye, 300, gloss(eye, roughness), |_, _| true);
         let (method, reference) = (by_method(&scene, eye), by_reference(&scene, eye));
         let (a, b) = (error(&method, &expected), error(&reference, &expected));
-        let whole = ratio(&reference, &expected);
-        println!(
-            "{kind:?} from {eye} at roughness {roughness}: method {a:.4}, reference {b:.4}, its sum {whole:.4}"
-        );
-        assert!(
-            a < most,
-            "{kind:?} from {eye} at roughness {roughness}: the method is off by {a}"
-        );
-        assert!(
-            (whole - 1.0).abs() < 0.01,
-            "from {eye} at roughness {roughness}: the reference sums to {whole}"
-        );
-        assert!(
-            b < 0.08,
-            "from {eye} at roughness {roughness}: the reference is off by {b}"
-        );
+        let what = format!("{kind:?} from {eye} at roughness {roughness}");
+        println!("{what}: method {a:.4}, reference {b:.4}");
+        assert!(a < most, "{what}: the method is off by {a}");
+        assert_unbiased(&what, &reference, &expected);
     }
 }
 
