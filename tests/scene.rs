@@ -1266,6 +1266,18 @@ fn scene_file_errors_have_a_place_and_a_hint() {
         &["not zero"],
     );
     error(
+        "(lights: [Point(color: (1,1,1), position: (0,0,0), direction: (0,1,0), shadow: true)])",
+        &["point light", "no `direction`"],
+    );
+    error(
+        "(lights: [Disc(color: (1,1,1), position: (0,0,0), direction: (0,1,0), shadow: true)])",
+        &["radius"],
+    );
+    error(
+        "(lights: [Disc(color: (1,1,1), position: (0,0,0), direction: (0,1,0), radius: 0, shadow: true)])",
+        &["its radius must be 0.0001 to 1000000 m"],
+    );
+    error(
         "(cameras: {\"a\": (eye: (0,0,0), target: (0,1,0), fov_y: 60)})",
         &["up vector"],
     );

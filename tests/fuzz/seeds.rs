@@ -363,7 +363,9 @@ const SCENE: &str = "(name: \"x\", models: [(file: \"small.obj\", transform: (tr
     scale: (2, 2, 2)), animation: (keyframes: [(time: 0), (time: 2, translate: (0, 1, 0), rotate_deg: (0, 360, 0))], \
     repeat: true)), (builtin: \"cornell\", lights: false)], lights: [Directional(name: \"sun\", color: (3, 3, 3), \
     direction: (-0.4, -1, -0.5), shadow: true), Point(color: (1, 1, 1), position: (0, 1, 0), shadow: false), \
-    Spot(color: (5, 5, 5), position: (0, 2, 0), direction: (0, -1, 0), inner_deg: 20, outer_deg: 40, shadow: true)], \
+    Spot(color: (5, 5, 5), position: (0, 2, 0), direction: (0, -1, 0), inner_deg: 20, outer_deg: 40, shadow: true), \
+    Rectangle(color: (2, 2, 2), position: (1, 2, 0), direction: (0, -1, 0), up: (1, 0, 0), width: 1, height: 0.5, \
+    shadow: true), Disc(color: (2, 2, 2), position: (1, 2, 0), direction: (0, -1, 0), radius: 0.5, shadow: false)], \
     sky: (0.2, 0.3, 0.4), cameras: {\"default\": (eye: (0.5, 1.8, 6), target: (0, 1, 0), fov_y: 50, near: 0.1, far: 50)})";
 
 const CAPTURE: &str = r#"{"schema":"conelab-capture-1","version":"0.1.0","device":"d","driver":"e","when":"2026-01-01T00:00:00Z",
@@ -410,9 +412,11 @@ static MODULE: LazyLock<Vec<u8>> = LazyLock::new(|| {
 });
 
 /// A triangle with a texture of another format, a spot and a camera.
-const LIT: &str = r#"{"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual","KHR_texture_basisu"],"scene":0,
-    "scenes":[{"nodes":[0,1,2]}],"nodes":[{"mesh":0,"scale":[1,2,1]},{"camera":0,"translation":[0.2,0.3,4]},
-    {"translation":[0,0,3],"extensions":{"KHR_lights_punctual":{"light":0}}}],
+const LIT: &str = r#"{"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual","EXT_lights_area","KHR_texture_basisu"],"scene":0,
+    "scenes":[{"nodes":[0,1,2,3,4]}],"nodes":[{"mesh":0,"scale":[1,2,1]},{"camera":0,"translation":[0.2,0.3,4]},
+    {"translation":[0,0,3],"extensions":{"KHR_lights_punctual":{"light":0}}},
+    {"rotation":[0,0,0,1],"scale":[2,1,1],"extensions":{"EXT_lights_area":{"light":0}}},
+    {"extensions":{"EXT_lights_area":{"light":1}}}],
     "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
     "materials":[{"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,1],"metallicFactor":0.5,"roughnessFactor":0.5,
     "baseColorTexture":{"index":0}},"normalTexture":{"index":0,"scale":0.5},"emissiveFactor":[0.1,0.2,0.3],
@@ -422,7 +426,8 @@ const LIT: &str = r#"{"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_pu
     "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3,"min":[0,0,0],"max":[1,1,0]}],
     "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,
     "uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
-    "extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot","color":[1,0.5,0.25],"intensity":20.0,
+    "extensions":{"EXT_lights_area":{"lights":[{"type":"rect","size":1.5,"rect":{"aspect":2.0}},{"type":"disk",
+    "color":[1,0.5,0.25],"intensity":20.0}]},"KHR_lights_punctual":{"lights":[{"type":"spot","color":[1,0.5,0.25],"intensity":20.0,
     "spot":{"innerConeAngle":0.3,"outerConeAngle":0.6}}]}}}"#;
 
 const POINT: &str = r#"{"schema":"conelab-point-1","id":"0123456789abcdef0123456789abcdef","experiment":"(graph: \"g\")",
