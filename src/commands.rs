@@ -269,6 +269,11 @@ fn found(path: &Path) -> PathBuf {
     at_home.unwrap_or_else(|| path.to_path_buf())
 }
 
+/// The experiment that a window opens: the named one, or the one that comes first.
+fn opened(path: Option<&Path>, home: &Workspace) -> PathBuf {
+    path.map_or_else(|| home.root.join("configs/cones.ron"), found)
+}
+
 /// The ending, after checking that the folder can be written to before any work is done.
 fn writable(path: &Path, endings: &[&str]) -> Result<String, LabError> {
     if endings == ["json"] && is_json_output(path) {

@@ -44,6 +44,27 @@ fn slide(driver: &mut WindowDriver, name: &str, by: f64) {
 }
 
 #[test]
+fn a_window_takes_the_changes_that_render_takes() {
+    let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
+    let changes = [
+        "--size",
+        "160x120",
+        "--set",
+        "exposure=1.5",
+        "--camera",
+        "(eye: (2, 3, -6), target: (2.8, 2, 2), fov_y: 50)",
+    ];
+    let mut driver = WindowDriver::open(SMALL, &changes);
+    let first = driver.first_picture();
+    let path = driver.home.path().join("changed.png");
+    let mut render = conelab(driver.home.path());
+    render.args(["render", "configs/opened.ron"]).args(changes);
+    succeeds(render.arg("-o").arg(&path));
+    let rendered = image::open(path).unwrap().to_rgba8();
+    assert_eq!(fingerprint(&rendered), first);
+}
+
+#[test]
 fn a_slider_changes_the_picture_and_undo_brings_it_back() {
     let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
     let mut driver = small();

@@ -53,15 +53,18 @@ impl ExperimentArgs {
 }
 
 impl Changes {
+    /// The picture's size, if the command line gives one.
+    pub fn size(&self) -> Result<Option<(u32, u32)>, LabError> {
+        self.size.as_deref().map(parse_size).transpose()
+    }
+
     /// The experiment of a file, changed.
     pub fn read(&self, file: &Path) -> Result<Experiment, LabError> {
         let mut experiment = Experiment::read(&super::found(file)).map_err(LabError::Input)?;
         if let Some(scene) = &self.scene {
             experiment.scene.clone_from(scene);
         }
-        if let Some(text) = &self.size {
-            experiment.size = parse_size(text)?;
-        }
+        experiment.size = self.size()?.unwrap_or(experiment.size);
         if let Some(text) = &self.camera {
             experiment.camera = parse_camera(text)?;
         }

@@ -1,7 +1,7 @@
 //! `conelab screenshot`.
 
 use super::DeviceArgs;
-use super::adapt::parse_size;
+use super::adapt::{Changes, parse_size};
 use crate::graph::run::Execution;
 use crate::lab::{LabError, Workspace};
 use crate::results::stats::{Spread, spreads};
@@ -17,12 +17,8 @@ use std::time::Duration;
 pub struct ScreenshotArgs {
     /// Experiment file; configs/cones.ron when absent.
     experiment: Option<PathBuf>,
-    /// Another scene: a built-in name, a scene RON, or a model file.
-    #[arg(long)]
-    scene: Option<String>,
-    /// Size of the picture in the viewport, pixels; as large as fits when absent.
-    #[arg(long, value_name = "WxH")]
-    size: Option<String>,
+    #[command(flatten)]
+    changes: Changes,
     /// Size of the whole interface, pixels.
     #[arg(long, value_name = "WxH", default_value = "1600x900")]
     window: String,
@@ -108,20 +104,15 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
     }
     let gpu = args.device.options();
     let script = script(args)?;
-    let experiment = args
-        .experiment
-        .as_deref()
-        .map_or_else(|| home.root.join("configs/cones.ron"), super::found);
-    let size = args.size.as_deref().map(parse_size).transpose()?;
-    let (scene, events) = (args.scene.clone(), args.events.clone());
+    let file = super::opened(args.experiment.as_deref(), &home);
     let options = Options {
+        experiment: args.changes.read(&file)?,
+        file,
+        size: args.changes.size()?,
         home,
         gpu: gpu.clone(),
-        experiment,
-        scene,
-        size,
         execution: Execution::Full,
-        events,
+        events: args.events.clone(),
     };
     let shot = take(options, &gpu, script)?;
     let rgb: Vec<u8> = shot

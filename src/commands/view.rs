@@ -1,6 +1,7 @@
 //! `conelab view`.
 
 use super::DeviceArgs;
+use super::adapt::Changes;
 use crate::graph::run::Execution;
 use crate::lab::{LabError, Workspace};
 use crate::vulkan::GpuOptions;
@@ -14,12 +15,8 @@ use std::path::PathBuf;
 pub struct ViewArgs {
     /// Experiment file; configs/cones.ron when absent.
     experiment: Option<PathBuf>,
-    /// Another scene: a built-in name, a scene RON, or a model file.
-    #[arg(long)]
-    scene: Option<String>,
-    /// Size of the picture in pixels; that of the viewport when absent.
-    #[arg(long, value_name = "WxH")]
-    size: Option<String>,
+    #[command(flatten)]
+    changes: Changes,
     /// Whether a frame runs all passes, or only those with changed inputs.
     #[arg(long, value_enum, default_value_t)]
     execution: Execution,
@@ -39,11 +36,6 @@ pub struct ViewArgs {
 /// Opens the window.
 pub fn run(args: &ViewArgs) -> Result<(), LabError> {
     let home = Workspace::find()?;
-    let size = args
-        .size
-        .as_deref()
-        .map(super::adapt::parse_size)
-        .transpose()?;
     let gpu = args.device.options();
     let window = WindowOptions {
         gpu: GpuOptions {
@@ -52,19 +44,15 @@ pub fn run(args: &ViewArgs) -> Result<(), LabError> {
         },
         size: super::adapt::parse_size(&args.window)?,
     };
-    let experiment = args
-        .experiment
-        .as_deref()
-        .map_or_else(|| home.root.join("configs/cones.ron"), super::found);
-    let (scene, events) = (args.scene.clone(), args.events.clone());
+    let file = super::opened(args.experiment.as_deref(), &home);
     let options = Options {
+        experiment: args.changes.read(&file)?,
+        file,
+        size: args.changes.size()?,
         home,
         gpu,
-        experiment,
-        scene,
-        size,
         execution: args.execution,
-        events,
+        events: args.events.clone(),
     };
     window::run(options, window)
 }

@@ -109,10 +109,10 @@ pub struct Options {
     pub home: Workspace,
     /// The device that renders.
     pub gpu: GpuOptions,
-    /// The experiment to open.
-    pub experiment: PathBuf,
-    /// Another scene than the experiment's.
-    pub scene: Option<String>,
+    /// The experiment to show.
+    pub experiment: Experiment,
+    /// Its file, which is watched.
+    pub file: PathBuf,
     /// Picture size; that of the viewport when absent.
     pub size: Option<(u32, u32)>,
     /// What frames do at first.
@@ -234,9 +234,9 @@ impl Workbench {
     /// show.
     ///
     /// # Errors
-    /// An experiment that cannot be read, a log that cannot be written.
+    /// A log that cannot be written.
     pub fn new(options: Options, wake: Wake) -> Result<Workbench, LabError> {
-        let experiment = Experiment::read(&options.experiment).map_err(LabError::Input)?;
+        let experiment = options.experiment;
         let events = options.events.as_deref().map(Events::new).transpose();
         let events = events
             .map_err(|e| LabError::Request(format!("cannot write the log of events: {e}")))?;
@@ -246,7 +246,7 @@ impl Workbench {
         let mut watch = watch::Watch::new(&root, wake.clone());
         let desired = RenderRequest {
             sides: [Some(SideRequest::of(&experiment)), None],
-            scene: options.scene.unwrap_or_else(|| experiment.scene.clone()),
+            scene: experiment.scene.clone(),
             environment: picture_of(&experiment),
             size: options.size.unwrap_or((0, 0)),
             execution: options.execution,
@@ -257,7 +257,7 @@ impl Workbench {
             },
             ..RenderRequest::default()
         };
-        watch.experiment(&options.experiment);
+        watch.experiment(&options.file);
         crate::results::capture::sweep_partials(&root.join("captures"));
         let trouble = watch.trouble.clone();
         Ok(Workbench {
