@@ -84,7 +84,13 @@ const SETTINGS: [(&str, &str); 3] = [
     ("shading_model", "single_scattering"),
 ];
 
+/// The red channel.
 fn by_method(scene: &Arc<Scene>, eye: DVec3) -> Vec<f64> {
+    let texels = texels(scene, eye);
+    texels.iter().map(|t| f64::from(t[0])).collect()
+}
+
+fn texels(scene: &Arc<Scene>, eye: DVec3) -> Vec<[f32; 4]> {
     let lab = lab(root());
     let wanted = vec!["direct".to_string()];
     let (mut session, _) = lab
@@ -93,8 +99,7 @@ fn by_method(scene: &Arc<Scene>, eye: DVec3) -> Vec<f64> {
     session.frame(0.0).unwrap();
     session.finish().unwrap();
     assert_clean(&lab);
-    let texels = floats(&mut session, "direct", 0);
-    texels.iter().map(|t| f64::from(t[0])).collect()
+    floats(&mut session, "direct", 0)
 }
 
 fn by_reference(scene: &Arc<Scene>, eye: DVec3) -> Vec<f64> {
@@ -216,6 +221,7 @@ fn matte_floors_reflect_the_form_factor() {
         // The 16 edges of a disc show where the floor cuts it.
         let most = if kind == DISC { 0.01 } else { 0.001 };
         assert!(a < most, "{what}: the method is off by {a}");
+        assert!(b < 0.25, "{what}: the reference is off by {b}");
         assert_unbiased(&what, &reference, &expected);
     }
 }
@@ -243,8 +249,8 @@ fn lobes_reflect_lights_as_integrals_of_the_brdf_do() {
         (PANEL, ABOVE, 0.9, 0.03),
         (DISC, ABOVE, 0.15, 0.02),
         (DISC, ABOVE, 0.4, 0.03),
-        (PANEL, LOW, 0.2, 0.25),
-        (PANEL, LOW, 0.5, 0.25),
+        (PANEL, LOW, 0.2, 0.08),
+        (PANEL, LOW, 0.5, 0.05),
     ];
     for (kind, eye, roughness, most) in cases {
         let (position, direction) = if eye == ABOVE {
@@ -261,7 +267,36 @@ fn lobes_reflect_lights_as_integrals_of_the_brdf_do() {
         let what = format!("{kind:?} from {eye} at roughness {roughness}");
         println!("{what}: method {a:.4}, reference {b:.4}");
         assert!(a < most, "{what}: the method is off by {a}");
+        assert!(b < 0.1, "{what}: the reference is off by {b}");
         assert_unbiased(&what, &reference, &expected);
+    }
+}
+
+#[test]
+fn metals_reflect_no_colour_that_they_do_not_have() {
+    let kind = LightKind::Disc { radius: 0.1 };
+    let mut light = light(
+        kind,
+        Vec3::new(0.5, 0.8, -3.0),
+        Vec3::new(0.0, -0.3, 1.0),
+        false,
+    );
+    light.color = Vec3::ONE;
+    let material = "base_color: (1, 0, 0, 1), metallic: 1, roughness: 0.7";
+    for eye in [ABOVE, LOW] {
+        let seen = texels(&floor(material, "", light.clone()), eye);
+        let [red, green] = [0, 1].map(|i| seen.iter().map(|t| f64::from(t[i])).sum::<f64>());
+        // Schlick's reflectance at grazing angles alone, by the formula of glTF.
+        let grazing = |p: DVec3, l: DVec3| {
+            let v = (eye - p).normalize();
+            let v_h = v.dot((v + l).normalize());
+            gloss(eye, 0.7)(p, l) * (1.0 - v_h).powi(5) / (0.04 + 0.96 * (1.0 - v_h).powi(5))
+        };
+        let expected: f64 = integrated(&light, eye, 100, grazing, |_, _| true)
+            .iter()
+            .sum();
+        println!("from {eye}: red {red:.4}, green {green:.6}, expected {expected:.6}");
+        assert!(red > 1e-3 && (green - expected).abs() < 0.3 * expected + 2e-4 * red);
     }
 }
 
@@ -278,30 +313,22 @@ fn hides(low: DVec3, high: DVec3, p: DVec3, x: DVec3) -> bool {
 
 #[test]
 fn shadows_of_lights_are_soft() {
+    let above = (Vec3::new(0.2, 1.6, 0.1), Vec3::NEG_Y);
+    // Half of the light is below the floor, whose visible half the wall hides.
+    let beside = (Vec3::new(-1.2, 0.1, 0.0), Vec3::X);
     let boxes = [
         // A slab halfway, a tower on the floor, a bar that is narrower than the light.
-        (
-            "slab",
-            DVec3::new(-0.5, 0.6, -0.4),
-            DVec3::new(0.5, 0.65, 0.4),
-            0.05,
-        ),
-        (
-            "tower",
-            DVec3::new(-0.3, 0.0, -0.3),
-            DVec3::new(0.3, 0.8, 0.3),
-            0.05,
-        ),
-        (
-            "bar",
-            DVec3::new(-0.06, 0.9, -1.5),
-            DVec3::new(0.06, 0.95, 1.5),
-            0.05,
-        ),
+        ("slab", (-0.5, 0.6, -0.4), (0.5, 0.65, 0.4), above, 0.05),
+        ("tower", (-0.3, 0.0, -0.3), (0.3, 0.8, 0.3), above, 0.05),
+        ("bar", (-0.06, 0.9, -1.5), (0.06, 0.95, 1.5), above, 0.05),
+        // The top of the disc is as high as the wall: one or two of 64 taps pass over it.
+        ("wall", (-0.6, 0.0, -1.5), (-0.5, 0.7, 1.5), beside, 0.15),
     ];
-    for (name, low, high, most) in boxes {
+    for (name, low, high, (position, direction), most) in boxes {
+        let (low, high) = (DVec3::from(low), DVec3::from(high));
         for kind in [PANEL, DISC] {
-            let light = light(kind, Vec3::new(0.2, 1.6, 0.1), Vec3::NEG_Y, true);
+            let mut light = light(kind, position, direction, true);
+            light.up = Vec3::new(0.0, 1.0, 0.3);
             let more = format!(
                 "\"box\": [Box(material: \"black\", low: ({}, {}, {}), high: ({}, {}, {}))]",
                 low.x, low.y, low.z, high.x, high.y, high.z
@@ -329,10 +356,15 @@ fn shadows_of_lights_are_soft() {
             let (a, b) = (error(&method, &expected), error(&reference, &expected));
             println!("{name} under {kind:?}: method {a:.4}, reference {b:.4}");
             assert!(a < most, "{name} under {kind:?}: the method is off by {a}");
-            assert!(
-                b < 0.05,
-                "{name} under {kind:?}: the reference is off by {b}"
-            );
+            // Beside the wall the light touches the floor: few samples have most of the sum.
+            if name == "wall" {
+                assert_unbiased(name, &reference, &expected);
+            } else {
+                assert!(
+                    b < 0.05,
+                    "{name} under {kind:?}: the reference is off by {b}"
+                );
+            }
         }
     }
 }

@@ -457,15 +457,16 @@ const ROWS: &[Row] = &[
             ] } });
             let half = 0.5f64.sqrt();
             for (light, more) in [
-                json!({ "rotation": [-half, 0, 0, half], "translation": [1, 2, 3] }),
-                json!({ "scale": [1, -2, 0.5] }),
-                json!({}),
-                json!({}),
-                json!({}),
-            ]
-            .into_iter()
-            .enumerate()
-            {
+                (
+                    0,
+                    json!({ "rotation": [-half, 0, 0, half], "translation": [1, 2, 3] }),
+                ),
+                (1, json!({ "scale": [1, -2, 0.5] })),
+                (2, json!({})),
+                (3, json!({})),
+                (4, json!({})),
+                (1, json!({ "scale": [0, 0, 0] })),
+            ] {
                 let mut node = more;
                 node["extensions"] = json!({ "EXT_lights_area": { "light": light } });
                 m.node(node);
@@ -501,6 +502,7 @@ const ROWS: &[Row] = &[
                 "lights that have no description in the file are left out",
                 1,
             );
+            warned(s, "a size that is not 0.0001 to 1000000 m", 1);
         },
     ),
     (

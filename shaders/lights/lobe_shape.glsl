@@ -21,21 +21,20 @@ mat3 lobeSpace(Surface s, vec3 v) {
     return transpose(mat3(x - m.z * n, cross(n, x) * ((m.x - m.z * m.w) / m.y), m.x * n - m.w * x));
 }
 
-// Fresnel reflectance of the facets that reflect light from l.
-vec3 fresnelTowards(Surface s, vec3 v, vec3 l) {
-    return fresnel(s, dot(v, normalize(v + normalize(l))));
-}
-
 // Light of a rectangle or disc that the lobe reflects to the viewer, without shadow. The table knows no
-// Fresnel reflectance: the lobe's mean is corrected to the mean direction of what it sees of the light,
-// without which rough dielectrics are off by a factor of two at grazing angles.
+// Fresnel reflectance. A light that fills the lobe has its mean, a small one that of the facets that reflect
+// from where it is seen: with the mean alone, rough dielectrics are off by a factor of two at grazing angles.
 vec3 lobeLight(Light light, Surface s, vec3 p, vec3 v) {
-    const vec3 UP = vec3(0, 0, 1);
-    mat3 space = lobeSpace(s, v), world = inverse(space);
-    vec3 form = formVector(light, p, space, UP);
+    mat3 space = lobeSpace(s, v);
+    vec3 form = formVector(light, p, space, vec3(0, 0, 1));
     if (form.z <= 0.0) return vec3(0.0);
-    vec3 lit = fresnelTowards(s, v, world * form), whole = fresnelTowards(s, v, world * UP);
-    return lobeReflectance(s, v) * (lit / max(whole, 1e-6)) * light.color * form.z;
+    vec2 albedo = lobeAlbedo(dot(s.normal, v), s.roughness);
+    vec3 whole = lobeReflectance(s, v), lit = whole;
+    if (albedo.y > 0.0) { // 0: the shading model has no Fresnel reflectance
+        vec3 half_way = unit(v + unit(inverse(space) * form));
+        lit = fresnel(s, max(dot(v, half_way), 0.0)) * (albedo.x + albedo.y) * s.multiple;
+    }
+    return mix(lit, whole, min(form.z, 1.0)) * light.color * form.z;
 }
 
 #endif

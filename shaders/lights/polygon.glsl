@@ -21,9 +21,9 @@ vec3 unit(vec3 v) {
 
 // The angle between a and b, along the normal of both.
 vec3 edgeVector(vec3 a, vec3 b) {
-    vec3 x = unit(a), y = unit(b), n = cross(x, y);
+    vec3 x = unit(a), n = cross(x, b - a); // of two unit vectors, it would be rounded away far from the light
     float sine = length(n);
-    return sine > 0.0 ? n * (atan(sine, dot(x, y)) / sine) : vec3(0.0);
+    return sine > 0.0 ? n * (atan(sine, dot(x, b)) / sine) : vec3(0.0);
 }
 
 // Form factor of a light at p as a vector: its component along a normal is the share of the cosine-weighted

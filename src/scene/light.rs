@@ -215,6 +215,11 @@ impl Field {
     pub(crate) fn range(&self) -> std::ops::RangeInclusive<f64> {
         self.range.0..=self.range.1
     }
+
+    /// Whether a number is allowed. Ends of the range stay allowed when they are rounded to 32 bits.
+    fn allows(&self, x: f64) -> bool {
+        (self.range.0 as f32..=self.range.1 as f32).contains(&(x as f32))
+    }
 }
 
 impl Quantity {
@@ -331,6 +336,13 @@ impl Light {
         }
     }
 
+    /// Whether files can hold its extents.
+    pub(crate) fn has_sound_extents(&self) -> bool {
+        let fields = self.fields();
+        let mut numbers = fields.numbers().iter();
+        numbers.all(|(f, x)| f.quantity != Quantity::Length || f.allows(*x))
+    }
+
     /// Half the extents of a rectangle or disc: towards its side and its top.
     pub(crate) fn half_extents(&self) -> (Vec3, Vec3) {
         let (width, height) = match self.kind {
@@ -338,8 +350,12 @@ impl Light {
             LightKind::Disc { radius } => (radius, radius),
             _ => return (Vec3::ZERO, Vec3::ZERO),
         };
-        let side = self.direction.cross(self.up).try_normalize();
-        let side = side.unwrap_or_else(|| self.direction.any_orthonormal_vector());
+        let side = self.direction.cross(self.up);
+        let side = if side.length() < 1e-4 * self.up.length() {
+            self.direction.any_orthonormal_vector()
+        } else {
+            side.normalize()
+        };
         (width * side, height * side.cross(self.direction))
     }
 }
@@ -405,7 +421,7 @@ impl LightFields {
             return Err(format!("its {} must be {rule}", field.name));
         }
         for (field, x) in &self.numbers {
-            if !field.range().contains(x) {
+            if !field.allows(*x) {
                 let ((least, most), unit) = (field.range, field.quantity.unit());
                 return Err(format!(
                     "its {} must be {least} to {most} {unit}",
@@ -541,6 +557,13 @@ impl<'de> Visitor<'de> for ReadFields {
             let of = |f: &&Field| *name == if self.in_scene { f.file } else { f.name };
             match (*name, FIELDS.iter().find(of)) {
                 (_, Some(field)) => match field.quantity {
+                    // Radians are rounded once more than in experiments, so that scenes of older
+                    // versions keep their hash.
+                    Quantity::Angle if self.in_scene => {
+                        let degrees: f32 = map.next_value()?;
+                        let exact = field.quantity.shown(degrees.to_radians());
+                        read.fields.numbers.push((field, exact));
+                    }
                     Quantity::Angle | Quantity::Length => {
                         read.fields.numbers.push((field, map.next_value()?));
                     }
@@ -550,6 +573,10 @@ impl<'de> Visitor<'de> for ReadFields {
                 (_, None) => read.name = map.next_value()?,
             }
         }
+        // In the order of the table, whatever that of the file: equal fields are then equal.
+        let place = |field: &Field| FIELDS.iter().position(|f| f == field);
+        read.fields.vectors.sort_by_key(|v| place(v.0));
+        read.fields.numbers.sort_by_key(|n| place(n.0));
         Ok(read)
     }
 }

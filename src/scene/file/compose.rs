@@ -101,6 +101,13 @@ pub(super) fn add_placed(scene: &mut Scene, model: &Scene, entry: &ModelEntry) {
         }));
     for mut light in model.lights.iter().filter(|_| entry.lights).cloned() {
         light.transform(&frame);
+        if !light.has_sound_extents() {
+            let (model, name) = (&model.name, &light.name);
+            let text =
+                format!("{model}: light '{name}' is left out: its size is too small or large");
+            scene.warnings.push(text);
+            continue;
+        }
         light.color *= entry.lights_scale.unwrap_or(1.0);
         scene.lights.push(light);
     }

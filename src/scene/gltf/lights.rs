@@ -27,6 +27,12 @@ pub(super) fn of_node(
     warnings: &mut Warnings,
 ) -> Option<Result<Light, &'static str>> {
     let (kind, color, own_name) = if let Some(light) = node.light() {
+        if node.extension_value(AREA).is_some() {
+            warnings.add(
+                "a node has one light: that of EXT_lights_area is left out",
+                name,
+            );
+        }
         let color = Vec3::from_array(light.color()) * light.intensity();
         let own_name = light.name().map(str::to_owned);
         (punctual(&light.kind()), color, own_name)
@@ -70,11 +76,10 @@ pub(super) fn of_node(
         ..Light::default()
     };
     light.transform(&world);
-    let is_sound = light.kind.numbers().iter().all(|x| x.is_finite());
-    Some(if is_sound {
+    Some(if light.has_sound_extents() {
         Ok(light)
     } else {
-        Err("a size that is too large")
+        Err("a size that is not 0.0001 to 1000000 m")
     })
 }
 
