@@ -2192,14 +2192,14 @@ fn structs_of_the_scene_that_the_program_fills_otherwise() {
         ),
         ""
     );
-    let right = "vec3 place;\nuint kind;\nvec4 rest[3];";
+    let right = "vec3 place;\nuint kind;\nvec4 rest[4];";
     assert_eq!(light(right, "kind"), "");
-    assert_snapshot!(light("uint kind;\nvec3 position;\nvec4 rest[2];", "kind"), @r"
+    assert_snapshot!(light("uint kind;\nvec3 position;\nvec4 rest[3];", "kind"), @r"
     shaders/fill.comp:7: error: 'kind' of 'lights' is at byte 12, and the shader declares it at 0
         | uint kind;
     ");
     assert_snapshot!(light("vec3 position;\nuint kind;", "kind"), @r"
-    shaders/fill.comp:10: error: an element of 'lights' has 64 bytes, and the shader declares 16
+    shaders/fill.comp:10: error: an element of 'lights' has 80 bytes, and the shader declares 16
         | layout(std430) readonly buffer Lights { Light lights[]; } lights;
     ");
     assert_snapshot!(light(&right.replace("uint kind", "int kind"), "kind"), @r"

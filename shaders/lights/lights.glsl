@@ -81,4 +81,9 @@ Incident incidentLight(Light light, vec3 p, vec3 source) {
     return Incident(l, light.color * falloff);
 }
 
+// The same, of a rectangle or disc as a point at its centre.
+Incident incidentLight(Light light, vec3 p) {
+    return incidentLight(light, p, light.position);
+}
+
 #endif

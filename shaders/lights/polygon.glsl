@@ -64,7 +64,7 @@ Incident arrivingLight(Light light, vec3 p, vec3 n) {
         return Incident(unit(form), light.color * (PI * length(form)));
     }
 #endif
-    return incidentLight(light, p, light.position);
+    return incidentLight(light, p);
 }
 
 #endif
