@@ -314,7 +314,7 @@ fn hides(low: DVec3, high: DVec3, p: DVec3, x: DVec3) -> bool {
 #[test]
 fn shadows_of_lights_are_soft() {
     let above = (Vec3::new(0.2, 1.6, 0.1), Vec3::NEG_Y);
-    // Half of the light is below the floor, whose visible half the wall hides.
+    // Half of the light is below the floor. The wall hides the other half.
     let beside = (Vec3::new(-1.2, 0.1, 0.0), Vec3::X);
     let boxes = [
         // A slab halfway, a tower on the floor, a bar that is narrower than the light.
@@ -356,7 +356,7 @@ fn shadows_of_lights_are_soft() {
             let (a, b) = (error(&method, &expected), error(&reference, &expected));
             println!("{name} under {kind:?}: method {a:.4}, reference {b:.4}");
             assert!(a < most, "{name} under {kind:?}: the method is off by {a}");
-            // Beside the wall the light touches the floor: few samples have most of the sum.
+            // The light touches the floor, where few samples have most of the sum.
             if name == "wall" {
                 assert_unbiased(name, &reference, &expected);
             } else {

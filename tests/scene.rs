@@ -1422,7 +1422,7 @@ fn glb_and_gltf_keep_lights_cameras_and_motion() {
         assert_same_scene(&scene, &again);
         assert_eq!(scene.lights.len(), again.lights.len());
         for (a, b) in scene.lights.iter().zip(&again.lights) {
-            // Extents grow with the node, whose rotation is rounded.
+            // Extents grow with the node, and its rotation is rounded.
             let rounded = match b.kind {
                 LightKind::Rectangle { width, height } => LightKind::Rectangle {
                     width: (width * 1e4).round() / 1e4,

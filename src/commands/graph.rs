@@ -122,7 +122,7 @@ fn params(
     Ok(params)
 }
 
-/// The picture, and resources that were asked for.
+/// The picture and the named resources.
 fn wanted(graph: &Graph, names: &[String]) -> Result<Vec<String>, LabError> {
     let results = graph.output.iter().chain(&graph.hdr);
     let mut wanted: Vec<String> = results.chain(names).cloned().collect();

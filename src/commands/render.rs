@@ -140,7 +140,7 @@ fn check(args: &RenderArgs) -> Result<bool, LabError> {
     Ok(exr)
 }
 
-/// The texture to write: the one asked for, or the picture.
+/// The texture to write: the named one, or the picture.
 fn texture(
     graph: &Graph,
     resource: Option<&(String, u32, u32)>,

@@ -361,7 +361,7 @@ impl Light {
 }
 
 /// Largest scale of a transform.
-pub(crate) fn scale_of(frame: &Mat4) -> f32 {
+fn scale_of(frame: &Mat4) -> f32 {
     let axes = [frame.x_axis, frame.y_axis, frame.z_axis];
     axes.map(|axis| axis.truncate().length())
         .into_iter()

@@ -37,7 +37,7 @@ struct Bad {
 /// The scores of the frames so far.
 #[derive(Default)]
 struct Scores {
-    /// By part of the light.
+    /// Keys are parts of the light.
     series: BTreeMap<String, PartSeries>,
     worst: Option<Bad>,
     warnings: Vec<String>,
@@ -182,7 +182,7 @@ impl Scores {
     }
 }
 
-/// A session whose parts of the light, and voxels if they are needed, can be read.
+/// A session with readable parts of the light, and voxels if a score needs them.
 fn session_of(runner: &mut Runner, job: &Job) -> Result<Session, LabError> {
     let Runner { lab, warm, .. } = runner;
     let loaded = warm.graph(&lab.home, &job.experiment.graph)?.clone();

@@ -79,7 +79,7 @@ pub struct Comparison {
     pub extras: Vec<u32>,
 }
 
-/// The items whose bits are set.
+/// The items with set bits.
 fn among<T>(list: &mut [T], bits: u8) -> impl Iterator<Item = &mut T> {
     let set = move |(i, _): &(usize, &mut T)| bits >> i & 1 != 0;
     list.iter_mut()

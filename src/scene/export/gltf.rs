@@ -54,7 +54,7 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
         "cameras": scene.cameras.iter().map(|(name, c)| lens(name, c)).collect::<Vec<_>>(),
         "accessors": writer.accessors,
         "bufferViews": writer.views,
-        "extensionsUsed": extensions_used(scene),
+        "extensionsUsed": extensions_used(scene, of_lights.keys()),
         "extensions": of_lights,
         "animations": animations,
     });
@@ -131,13 +131,11 @@ fn save(mut root: Value, bytes: Vec<u8>, path: &Path, binary: bool) -> Result<()
     write_file(path, &file)
 }
 
-fn extensions_used(scene: &Scene) -> Vec<&'static str> {
+fn extensions_used<'a>(scene: &Scene, of_lights: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
     let plain = Material::default();
     let mut used = vec!["KHR_materials_emissive_strength"];
     let some = |differs: &dyn Fn(&Material) -> bool| scene.materials.iter().any(differs);
-    let has = |area: bool| scene.lights.iter().any(|l| (light(l).0 == 1) == area);
-    used.extend(has(false).then_some(LIGHTS[0]));
-    used.extend(has(true).then_some(LIGHTS[1]));
+    used.extend(of_lights.map(String::as_str));
     used.extend(some(&|m| m.ior != plain.ior).then_some("KHR_materials_ior"));
     used.extend(some(&|m| has_specular(m)).then_some("KHR_materials_specular"));
     let colored = scene.meshes.iter().any(Mesh::has_colors);

@@ -193,7 +193,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Reads back what a tab asks for: at once if nothing changes, else several times a second.
+    /// Reads back the content for a tab: at once if nothing changes, else several times a second.
     fn read_back(&mut self, number: usize) -> Result<(), LabError> {
         let side = &mut self.sides[number];
         let Some(session) = side.session.as_mut().filter(|_| !side.preview) else {

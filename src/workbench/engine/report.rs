@@ -153,7 +153,7 @@ pub enum Report {
     Loaded(Arc<Scene>),
     /// A scene could not be loaded; the one before stays.
     LoadFailed(String),
-    /// A resource that a tab asked for.
+    /// A resource for a tab.
     Content(Content),
     /// Messages of the graph's checks that failed.
     Checks(usize, Vec<String>),
