@@ -16,14 +16,14 @@ cp -r passes shaders configs "$home/"
 export CONELAB_HOME=$home
 for tab in Scene Time; do
     echo "tab $tab, two voxelizers, rendering on"
-    "$conelab" screenshot --scene "$scene" --size "$size" --click "raster | tessellated" --click "$tab" \
-        --click "keep rendering" \
+    "$conelab" screenshot --scene "$scene" --size "$size" --click Compare --click "raster | tessellated" --click "$tab" \
+        --click continuous \
         --measure 300 -o "$home/shot.png"
 done
 echo "pictures painted as they come, and sixty times a second"
 for every in "" "--every 16.667"; do
     # shellcheck disable=SC2086 # an option and its value, or nothing
-    "$conelab" screenshot --scene "$scene" --size "$size" --click "keep rendering" --pace 300 $every -o "$home/shot.png"
+    "$conelab" screenshot --scene "$scene" --size "$size" --click continuous --pace 300 $every -o "$home/shot.png"
 done
 echo "an edit of the shader of the default's rays"
 "$conelab" screenshot --scene "$scene" --size "$size" -o "$home/shot.png" --times 25 \

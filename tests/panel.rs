@@ -429,6 +429,7 @@ fn a_and_b_are_timed_over_the_same_frames() {
     }
     driver.resting(0);
     let mark = driver.now();
+    driver.click("", "Compare");
     driver.click("", "raster | tessellated");
     driver.other_picture(mark, 1, &first);
     driver.resting(1);

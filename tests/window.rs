@@ -344,12 +344,13 @@ fn a_and_b_are_told_apart_on_the_screen_and_in_numbers() {
     driver.screenshot_until("the line at 30 %", halves(3 * width / 10));
 
     let mark = driver.now();
-    driver.click("", "B to A");
+    driver.click("", "Copy B to A");
     driver.picture(mark, 0, &other);
 
     // A comparison that the graph offers.
     driver.click("", "FLIP");
     let mark = driver.now();
+    driver.click("", "Compare");
     driver.click("", "raster | tessellated");
     driver.wait(mark, "B built", |e| e["event"] == "built" && e["side"] == 1);
     driver.other_picture(mark, 1, &other);
@@ -609,7 +610,7 @@ fn the_window_answers_and_closes_while_a_slow_device_renders() {
         e["event"] == "picture" && e["preview"] == false
     });
     println!("a frame takes {:.0} ms", number(&slow, "gpu_ms"));
-    driver.click("", "keep rendering");
+    driver.click("", "continuous");
     let mut waits = Vec::new();
     for shown in [true, false, true, false, true] {
         std::thread::sleep(Duration::from_millis(300));
@@ -639,7 +640,7 @@ fn unchanged_passes_are_skipped_at_a_click() {
     let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
     let mut driver = small();
     let first = driver.first_picture();
-    driver.click("", "keep rendering");
+    driver.click("", "continuous");
     driver.click("", "Time");
     let mark = driver.now();
     driver.event(mark, "picture");
@@ -805,6 +806,7 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
 
     // A pass that is off is left out of the picture and saved as such.
     driver.click("", "Graph");
+    driver.click("", "Show the nodes");
     driver.click("Button", "pass shadow map");
     let mark = driver.now();
     driver.click("", "on");
@@ -865,8 +867,8 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     });
     driver.click("", "A | B");
     driver.texts_until("A alone", |texts| !texts.iter().any(|t| t == "FLIP"));
-    driver.click("", "picture");
-    driver.click("Button", "all");
+    driver.click("", "Nodes");
+    driver.click("Button", "Fit graph");
 
     // A click on a texture of a pass inspects it, once the drawing is large enough to read.
     driver.click("TextInput", "find a pass, a texture");
@@ -877,4 +879,38 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
         texts.iter().any(|t| t == "texture shadowMap")
     });
     driver.close();
+}
+
+#[test]
+fn what_was_not_saved_comes_back_after_a_kill() {
+    let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
+    let mut driver = small();
+    let first = driver.first_picture();
+    assert!(!driver.title().contains('●'), "{}", driver.title());
+    driver.click("", "Display");
+    let mark = driver.now();
+    slide(&mut driver, "exposure", 0.15);
+    driver.other_picture(mark, 0, &first);
+    let brighter = driver.resting(0);
+    assert_eq!(driver.title(), "● opened - cornell - conelab");
+    driver.click("", "Chart");
+    // Longer than the interval of writing.
+    std::thread::sleep(Duration::from_secs(3));
+    let size = driver.size();
+    driver.kill_and_restart();
+    driver.wait(0, "the picture of the last session", |e| {
+        e["event"] == "picture" && e["fingerprint"] == brighter.as_str()
+    });
+    assert_eq!(driver.title(), "● opened - cornell - conelab");
+    assert_eq!(driver.size(), size);
+    driver.texts_until("the tab that was open", |texts| {
+        texts.iter().any(|t| t.starts_with("Error against time"))
+    });
+
+    // Closing asks once, and saving answers it.
+    driver.ask_to_close();
+    driver.click("Button", "Save and close");
+    driver.end(Instant::now());
+    let saved = std::fs::read_to_string(driver.home.path().join("configs/opened.ron")).unwrap();
+    assert!(saved.contains("exposure"), "{saved}");
 }

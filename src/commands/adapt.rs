@@ -19,7 +19,7 @@ pub struct ExperimentArgs {
 }
 
 /// Changes of the command line to an experiment.
-#[derive(Clone, Debug, Args)]
+#[derive(Clone, Debug, Default, PartialEq, Args)]
 pub struct Changes {
     /// Another scene: a built-in name, a scene RON, or a model file.
     #[arg(long, value_parser = super::spec())]
@@ -53,6 +53,11 @@ impl ExperimentArgs {
 }
 
 impl Changes {
+    /// Whether nothing is changed.
+    pub fn is_empty(&self) -> bool {
+        *self == Changes::default()
+    }
+
     /// The picture's size, if the command line gives one.
     pub fn size(&self) -> Result<Option<(u32, u32)>, LabError> {
         self.size.as_deref().map(parse_size).transpose()

@@ -7,6 +7,7 @@ use crate::lab::{LabError, Workspace};
 use crate::results::stats::{Spread, spreads};
 use crate::workbench::Options;
 use crate::workbench::hosts::screenshot::{Edit, Pace, Script, Shot, take};
+use crate::workbench::session::Restore;
 use clap::Args;
 use std::io::Cursor;
 use std::path::PathBuf;
@@ -32,7 +33,7 @@ pub struct ScreenshotArgs {
     #[arg(long, default_value_t = 0)]
     measure: usize,
     /// Measure the pace of the interface over this number of the engine's pictures. The engine must
-    /// keep rendering (`--click "keep rendering"` in the tab Time).
+    /// keep rendering (`--click continuous`).
     #[arg(long, value_name = "PICTURES", default_value_t = 0)]
     pace: usize,
     /// Milliseconds between the interface's frames while its pace is measured, as a screen has it;
@@ -113,6 +114,7 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         gpu: gpu.clone(),
         execution: Execution::Full,
         events: args.events.clone(),
+        restore: Restore::Nothing,
     };
     let shot = take(options, &gpu, script)?;
     let rgb: Vec<u8> = shot

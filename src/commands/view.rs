@@ -7,22 +7,23 @@ use crate::lab::{LabError, Workspace};
 use crate::vulkan::GpuOptions;
 use crate::workbench::Options;
 use crate::workbench::hosts::window::{self, WindowOptions};
+use crate::workbench::session::Restore;
 use clap::Parser;
 use std::path::PathBuf;
 
 /// Arguments of `view`.
 #[derive(Debug, Parser)]
 pub struct ViewArgs {
-    /// Experiment file; configs/cones.ron when absent.
+    /// Experiment file. Default: the last session, then configs/cones.ron.
     experiment: Option<PathBuf>,
     #[command(flatten)]
     changes: Changes,
     /// Whether a frame runs all passes, or only those with changed inputs.
     #[arg(long, value_enum, default_value_t)]
     execution: Execution,
-    /// Size of the window.
-    #[arg(long, value_name = "WxH", default_value = "1600x900")]
-    window: String,
+    /// Size of the window. Default: the last session's, then 85 % of the monitor's width and height.
+    #[arg(long, value_name = "WxH")]
+    window: Option<String>,
     /// The device that paints the window, if it is not the one that renders.
     #[arg(long, value_name = "DEVICE")]
     window_device: Option<String>,
@@ -37,12 +38,14 @@ pub struct ViewArgs {
 pub fn run(args: &ViewArgs) -> Result<(), LabError> {
     let home = Workspace::find()?;
     let gpu = args.device.options();
+    let size = args.window.as_deref();
+    let size = size.map(super::adapt::parse_size).transpose()?;
     let window = WindowOptions {
         gpu: GpuOptions {
             device: args.window_device.clone().or(gpu.device.clone()),
             ..gpu.clone()
         },
-        size: super::adapt::parse_size(&args.window)?,
+        size: size.or(crate::workbench::session::window(&home.root).size),
     };
     let file = super::opened(args.experiment.as_deref(), &home);
     let options = Options {
@@ -53,6 +56,10 @@ pub fn run(args: &ViewArgs) -> Result<(), LabError> {
         gpu,
         execution: args.execution,
         events: args.events.clone(),
+        restore: match args.experiment.is_none() && args.changes.is_empty() {
+            true => Restore::Experiment,
+            false => Restore::Layout,
+        },
     };
     window::run(options, window)
 }

@@ -1,106 +1,251 @@
 //! The bar at the top: experiments, scenes, undo, comparisons; and the line at the foot.
 
-use crate::diagnostics::{Entries, RawText};
 use crate::experiment::Experiment;
 use crate::graph::file::CompareDecl;
 use crate::results::timers::Rows;
 use crate::workbench::desired::edit;
 use crate::workbench::desired::request::SideRequest;
 use crate::workbench::engine::Order;
-use crate::workbench::messages::AMBER;
-use crate::workbench::panel::control::CHANGED;
+use crate::workbench::engine::report::{GraphInfo, PictureReport};
+use crate::workbench::panel::control::named;
+use crate::workbench::tabs::gallery::Gallery;
 use crate::workbench::tabs::surroundings::Surroundings;
-use crate::workbench::{Workbench, ron_files, short};
+use crate::workbench::tabs::tables::Tables;
+use crate::workbench::{Workbench, ron_files, short, theme};
 use egui::Ui;
+use egui::scroll_area::ScrollBarVisibility;
+use egui_phosphor::regular as icons;
 
 impl Workbench {
+    /// The row at the top. It never wraps: a narrow window scrolls its left part.
     pub(super) fn bar(&mut self, ui: &mut Ui) {
-        ui.horizontal_wrapped(|ui| {
-            ui.strong("conelab");
-            self.experiments_menu(ui);
-            self.scenes_menu(ui);
-            self.warning_count(ui);
-            ui.separator();
-            let (undo, redo) = self.undo.history.can();
-            if ui.add_enabled(undo, egui::Button::new("undo")).on_hover_text("Ctrl Z").clicked() {
-                self.go(true);
-            }
-            if ui.add_enabled(redo, egui::Button::new("redo")).on_hover_text("Ctrl Shift Z").clicked() {
-                self.go(false);
-            }
-            ui.separator();
-            let mut compare = self.desired.sides[1].is_some();
-            if ui
-                .toggle_value(&mut compare, "A | B")
-                .on_hover_text(
-                    "A second experiment beside the first; off, A is again what it was, unless it was edited",
-                )
-                .clicked()
-            {
-                match compare {
-                    true => self.compare_sides([self.desired.sides[0].clone(), self.desired.sides[0].clone()]),
-                    false => self.end_comparison(),
-                }
-            }
-            self.comparisons(ui);
-            if self.desired.sides[1].is_some() {
-                self.compare_bar(ui);
-            }
-            ui.separator();
-            ui.toggle_value(&mut self.desired.continuous, "keep rendering").on_hover_text(
-                "Frames are rendered when something changes; with this also when nothing does, to measure",
-            );
-            let mut timers = self.view.timers != Rows::None;
-            if ui.toggle_value(&mut timers, "timers").on_hover_text("T: GPU times on the picture").clicked() {
-                self.view.timers = if timers { Rows::Stages } else { Rows::None };
-            }
-            if timers {
-                ui.selectable_value(&mut self.view.timers, Rows::Stages, "stages");
-                ui.selectable_value(&mut self.view.timers, Rows::Passes, "passes");
-            }
-            let mut panels = !self.layout.hidden;
-            if ui.toggle_value(&mut panels, "panels").on_hover_text("H").clicked() {
-                self.layout.hidden = !panels;
-            }
-            if ui.button("help").on_hover_text("F1").clicked() {
-                self.layout.help = !self.layout.help;
-            }
+        ui.horizontal(|ui| {
+            let left = (ui.available_width() - RIGHT).max(120.0);
+            let scroll = egui::ScrollArea::horizontal().max_width(left);
+            let scroll = scroll.scroll_bar_visibility(ScrollBarVisibility::AlwaysHidden);
+            scroll.show(ui, |ui| ui.horizontal(|ui| self.bar_left(ui)));
+            let right = egui::Layout::right_to_left(egui::Align::Center);
+            ui.with_layout(right, |ui| self.bar_right(ui));
         });
     }
 
-    /// Comparisons that the graph offers: each is one click.
+    /// Files, undo, comparisons.
+    fn bar_left(&mut self, ui: &mut Ui) {
+        self.file_menu(ui);
+        self.experiments_menu(ui);
+        self.scenes_menu(ui);
+        self.warning_count(ui);
+        ui.separator();
+        let (undo, redo) = self.undo.history.can();
+        for (can, back, icon, name, about) in [
+            (undo, true, icons::ARROW_U_UP_LEFT, "undo", "Undo (Ctrl Z)"),
+            (
+                redo,
+                false,
+                icons::ARROW_U_UP_RIGHT,
+                "redo",
+                "Redo (Ctrl Shift Z)",
+            ),
+        ] {
+            ui.add_enabled_ui(can, |ui| {
+                if icon_button(ui, icon, name, about, false) {
+                    self.go(back);
+                }
+            });
+        }
+        ui.separator();
+        let compares = self.desired.sides[1].is_some();
+        let toggle = ui.selectable_label(compares, "A | B").on_hover_text(
+            "Compare with a second experiment. Off, A returns to its values from before unless you edited it",
+        );
+        if toggle.clicked() {
+            match compares {
+                false => {
+                    let a = &self.desired.sides[0];
+                    self.compare_sides([a.clone(), a.clone()]);
+                }
+                true => self.end_comparison(),
+            }
+        }
+        self.comparisons(ui);
+        if self.desired.sides[1].is_some() {
+            self.compare_bar(ui);
+        }
+    }
+
+    /// What is shown, as icons; from right to left.
+    fn bar_right(&mut self, ui: &mut Ui) {
+        if icon_button(ui, icons::QUESTION, "help", "Help (F1)", self.layout.help) {
+            self.layout.help = !self.layout.help;
+        }
+        self.settings_menu(ui);
+        let shown = !self.layout.hidden;
+        if icon_button(
+            ui,
+            icons::SIDEBAR_SIMPLE,
+            "panels",
+            "Show the panels (H)",
+            shown,
+        ) {
+            self.layout.hidden = shown;
+        }
+        let about = "Capture the experiment and its picture (F12)";
+        if icon_button(ui, icons::CAMERA, "capture now", about, false) {
+            self.capture();
+        }
+        let about = "GPU times over the picture: stages, passes, none (T)";
+        let timers = self.view.timers != Rows::None;
+        if icon_button(ui, icons::TIMER, "timers", about, timers) {
+            self.view.timers = self.view.timers.next();
+        }
+        let about = "Continuous: render without pause, to measure. Otherwise frames are rendered only when something changes";
+        let continuous = self.desired.continuous;
+        if icon_button(ui, icons::INFINITY, "continuous", about, continuous) {
+            self.desired.continuous = !continuous;
+        }
+        let playing = self.desired.clock.playing;
+        let icon = if playing { icons::PAUSE } else { icons::PLAY };
+        if icon_button(ui, icon, "play time", "Play or pause time (Space)", playing) {
+            self.desired.clock.playing = !playing;
+        }
+    }
+
+    fn file_menu(&mut self, ui: &mut Ui) {
+        let menu = ui.menu_button("File", |ui| {
+            let row = |ui: &mut Ui, text: &str, keys: &str| {
+                let button = egui::Button::new(text).right_text(keys);
+                ui.add(button).clicked()
+            };
+            if row(ui, "Open…", "Ctrl O") {
+                self.scene.models.ask();
+            }
+            ui.menu_button("Recent", |ui| self.recent_files(ui));
+            if row(ui, "Save", "Ctrl S") {
+                self.save(false);
+            }
+            if row(ui, "Save as…", "") {
+                self.dock.open_tab::<Gallery>();
+            }
+            if row(ui, "Capture", "F12") {
+                self.capture();
+            }
+        });
+        menu.response.on_hover_text("Open, save, capture");
+    }
+
+    fn recent_files(&mut self, ui: &mut Ui) {
+        let mut chosen = None;
+        for path in &self.experiment.recent {
+            let name = short(&path.to_string_lossy());
+            let row = ui.button(name).on_hover_text(path.display().to_string());
+            if row.clicked() {
+                chosen = Some(path.clone());
+                ui.close();
+            }
+        }
+        if self.experiment.recent.is_empty() {
+            ui.weak("No file was opened yet");
+        }
+        if let Some(path) = chosen {
+            self.dropped(&path);
+        }
+    }
+
+    /// Theme, size of text, and the layout.
+    fn settings_menu(&mut self, ui: &mut Ui) {
+        let icon = egui::RichText::new(icons::GEAR).size(16.0);
+        let menu = ui.menu_button(icon, |ui| {
+            ui.label(theme::title("Theme"));
+            let mut theme = ui.ctx().options(|o| o.theme_preference);
+            ui.horizontal(|ui| {
+                for (choice, name) in [
+                    (egui::ThemePreference::System, "System"),
+                    (egui::ThemePreference::Dark, "Dark"),
+                    (egui::ThemePreference::Light, "Light"),
+                ] {
+                    ui.selectable_value(&mut theme, choice, name);
+                }
+            });
+            ui.ctx().set_theme(theme);
+            ui.label(theme::title("Size"));
+            ui.horizontal(|ui| {
+                for percent in [80_u8, 100, 125, 150, 200] {
+                    let size = f32::from(percent) / 100.0;
+                    let is_it = (ui.ctx().zoom_factor() - size).abs() < 1e-3;
+                    if ui.selectable_label(is_it, format!("{percent} %")).clicked() {
+                        ui.ctx().set_zoom_factor(size);
+                    }
+                }
+            });
+            ui.weak("Ctrl + and Ctrl - change it, too");
+            ui.separator();
+            if ui.button("Reset the layout").clicked() {
+                self.dock.reset();
+                ui.close();
+            }
+        });
+        let about = "Theme, size, layout";
+        let response = menu.response.on_hover_text(about);
+        named(&response, egui::WidgetType::Button, "settings");
+    }
+
+    /// Comparisons that the graph offers.
     fn comparisons(&mut self, ui: &mut Ui) {
         let Some(info) = self.sides[0].info.clone() else {
             return;
         };
-        for compare in &info.graph.compare {
-            let button = ui
-                .button(&compare.value.title)
-                .on_hover_text(&compare.value.help);
-            if button.clicked() {
-                let base = self.desired.sides[0].clone().unwrap_or_default();
-                let make = |values: &Entries<RawText>| {
-                    if let Some(graph) = CompareDecl::graph(values) {
-                        return self.with_graph(&base, &graph);
-                    }
-                    let mut side = base.clone();
-                    for (name, text) in &values.0 {
-                        if let Some(param) = info.graph.params.param(&name.value)
-                            && let Ok(value) = param.parse(&text.value.0)
-                        {
-                            edit::set(&mut side, param, &value);
-                        }
-                    }
-                    side
-                };
-                self.compare_sides([Some(make(&compare.value.a)), Some(make(&compare.value.b))]);
-            }
+        if info.graph.compare.is_empty() {
+            return;
         }
+        let mut chosen = None;
+        let menu = ui.menu_button("Compare", |ui| {
+            for compare in &info.graph.compare {
+                let compared = self.comparison_sides(&info, &compare.value);
+                let is_it = self.desired.sides == compared;
+                let row = ui
+                    .selectable_label(is_it, &compare.value.title)
+                    .on_hover_text(&compare.value.help);
+                if row.clicked() {
+                    chosen = Some(compared);
+                    ui.close();
+                }
+            }
+        });
+        menu.response
+            .on_hover_text("Comparisons that the graph offers");
+        if let Some(sides) = chosen {
+            self.compare_sides(sides);
+        }
+    }
+
+    /// A and B of a comparison that the graph offers.
+    fn comparison_sides(
+        &self,
+        info: &GraphInfo,
+        compare: &CompareDecl,
+    ) -> [Option<SideRequest>; 2] {
+        let base = self.desired.sides[0].clone().unwrap_or_default();
+        [&compare.a, &compare.b].map(|values| {
+            if let Some(graph) = CompareDecl::graph(values) {
+                return Some(self.with_graph(&base, &graph));
+            }
+            let mut side = base.clone();
+            for (name, text) in &values.0 {
+                if let Some(param) = info.graph.params.param(&name.value)
+                    && let Ok(value) = param.parse(&text.value.0)
+                {
+                    edit::set(&mut side, param, &value);
+                }
+            }
+            Some(side)
+        })
     }
 
     fn experiments_menu(&mut self, ui: &mut Ui) {
         let mut chosen = None;
-        let response = ui.menu_button(format!("experiment: {}", self.experiment.name), |ui| {
+        let mark = if self.modified() { "● " } else { "" };
+        let title = format!("{mark}experiment: {}", self.experiment.name);
+        let response = ui.menu_button(title, |ui| {
             for path in ron_files(&self.setup.home.root.join("configs")) {
                 let name = path
                     .file_stem()
@@ -117,10 +262,17 @@ impl Workbench {
                 });
             }
         });
-        response.response.on_hover_text("Presets: configs/*.ron");
+        response.response.on_hover_text(match mark.is_empty() {
+            true => "Presets: configs/*.ron",
+            false => "Modified since it was opened or saved. Presets: configs/*.ron",
+        });
         let Some((path, side)) = chosen else { return };
         match Experiment::read(&path) {
-            Ok(experiment) if side == 0 => self.open(&experiment),
+            Ok(experiment) if side == 0 => {
+                self.opened_file(&path);
+                self.session.file.clone_from(&path);
+                self.open(&experiment);
+            }
             Ok(experiment) => self.compare_sides([
                 self.desired.sides[0].clone(),
                 Some(SideRequest::of(&experiment)),
@@ -167,13 +319,14 @@ impl Workbench {
         if count == 0 {
             return;
         }
-        let text = egui::RichText::new(format!("warnings: {count}")).color(AMBER);
+        let text =
+            egui::RichText::new(format!("warnings: {count}")).color(ui.visuals().warn_fg_color);
         if ui
             .small_button(text)
             .on_hover_text("Show them on the Scene tab")
             .clicked()
         {
-            self.tabs.open::<Surroundings>();
+            self.dock.open_tab::<Surroundings>();
         }
     }
 
@@ -193,22 +346,82 @@ impl Workbench {
                 }
             }
             if let Some(device) = &self.device {
-                ui.weak(&device.name).on_hover_text(&device.driver);
+                ui.label(&device.name).on_hover_text(&device.driver);
             }
-            if let Some(p) = &self.sides[0].picture {
-                ui.weak(format!("{}x{}", p.size[0], p.size[1]));
-                ui.weak(format!("last frame {:.2} ms", p.times.gpu_ms))
-                    .on_hover_text("On the GPU, from first to last command");
-                if p.preview {
-                    ui.weak("preview, while the passes are built");
-                }
-            }
+            ui.label(&self.messages.status);
             ui.weak(format!("watching {} folders", self.watch.folder_count()))
                 .on_hover_ui(|ui| drop(ui.label(self.watch.summary())));
             if let Some(what) = self.pending(ui.ctx()) {
-                ui.colored_label(CHANGED, what);
+                ui.colored_label(ui.visuals().warn_fg_color, what);
             }
-            ui.label(&self.messages.status);
         });
     }
+
+    /// The state of the picture, in the row of its tab; from right to left.
+    pub(super) fn picture_state(&mut self, ui: &mut Ui) {
+        ui.spacing_mut().item_spacing.x = 12.0;
+        ui.add_space(4.0);
+        let roles = theme::roles(ui);
+        for (side, name) in [(1, "B"), (0, "A")] {
+            let both = self.desired.sides[1].is_some();
+            let Some(picture) = &self.sides[side].picture else {
+                continue;
+            };
+            if let Some((metric, error)) = self.tabs.chart.known_error(side, self.sent.number) {
+                let text = format!("{metric} {error:.3e}");
+                ui.label(text).on_hover_text("Error against the reference");
+            }
+            let time = format!("{:.2} ms", picture.times.gpu_ms);
+            ui.label(time)
+                .on_hover_text("GPU time of the last frame, from its first command to its last");
+            let (text, done) = self.convergence(side, picture);
+            let color = if done { roles.good } else { roles.modified };
+            ui.colored_label(color, text).on_hover_text(
+                "Some settings gather light over several frames. The picture is final once it has converged",
+            );
+            if both {
+                ui.strong(name);
+            }
+        }
+        if let Some(picture) = &self.sides[0].picture {
+            ui.label(format!("{}x{}", picture.size[0], picture.size[1]))
+                .on_hover_text("Size of the picture, pixels");
+        }
+        if let Some(text) = self.comparison_text() {
+            ui.label(text);
+        }
+        if self.is_pointed() && self.click_fills_tables() && ui.link("Probe: show tables").clicked()
+        {
+            self.dock.open_tab::<Tables>();
+        }
+    }
+
+    /// How far a side's picture has converged, and whether it has.
+    fn convergence(&self, side: usize, picture: &PictureReport) -> (String, bool) {
+        if !self.sides[side].errors.is_empty() {
+            return ("last good build".into(), false);
+        }
+        if picture.preview || picture.request < self.sent.number {
+            return ("rendering".into(), false);
+        }
+        match picture.left {
+            _ if self.desired.continuous || self.desired.clock.playing => ("running".into(), false),
+            0 => ("converged".into(), true),
+            left => {
+                let frame = picture.asked.saturating_sub(left);
+                (format!("frame {frame} of {}", picture.asked), false)
+            }
+        }
+    }
+}
+
+/// Width of the icons at the right of the bar, points.
+const RIGHT: f32 = 232.0;
+
+/// A button with an icon, its name for screen readers and scripts, and a tooltip.
+fn icon_button(ui: &mut Ui, icon: &str, name: &str, about: &str, on: bool) -> bool {
+    let button = egui::Button::selectable(on, egui::RichText::new(icon).size(16.0));
+    let button = ui.add(button);
+    named(&button, egui::WidgetType::Button, name);
+    button.on_hover_text(about).clicked()
 }

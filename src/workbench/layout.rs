@@ -1,10 +1,9 @@
-//! The panels at the sides, and what keys do.
+//! The panel of parameters, and the effect of keys.
 
 use crate::workbench::engine::Order;
 use crate::workbench::picture::zoom;
-use crate::workbench::tabs::TABS;
 use crate::workbench::{Workbench, help, panel, watch};
-use egui::{TextureId, Ui};
+use egui::Ui;
 use std::time::Instant;
 
 /// What of the window is shown, and how large.
@@ -18,6 +17,10 @@ pub(super) struct Layout {
     /// Size of pictures that do not follow the area.
     pub fixed_size: Option<(u32, u32)>,
     pub resize_since: Option<Instant>,
+    /// Whether the window asks about unsaved changes before it closes.
+    pub asks_close: bool,
+    /// The window's title, as last set.
+    pub title: String,
 }
 
 impl Layout {
@@ -29,6 +32,8 @@ impl Layout {
             area: [0, 0],
             fixed_size,
             resize_since: None,
+            asks_close: false,
+            title: String::new(),
         }
     }
 }
@@ -38,16 +43,16 @@ impl Workbench {
         // A panel that shrinks to its content stays small.
         ui.take_available_width();
         if self.desired.sides[1].is_some() {
-            ui.horizontal(|ui| {
+            ui.horizontal_wrapped(|ui| {
                 ui.selectable_value(&mut self.panel.side, 0, "A");
                 ui.selectable_value(&mut self.panel.side, 1, "B");
-                if ui.small_button("A to B").clicked() {
+                if ui.small_button("Copy A to B").clicked() {
                     self.desired.sides[1] = self.desired.sides[0].clone();
                 }
-                if ui.small_button("B to A").clicked() {
+                if ui.small_button("Copy B to A").clicked() {
                     self.desired.sides[0] = self.desired.sides[1].clone();
                 }
-                if ui.small_button("swap").clicked() {
+                if ui.small_button("Swap").clicked() {
                     self.desired.sides.swap(0, 1);
                 }
             });
@@ -64,32 +69,14 @@ impl Workbench {
         if let Some(side) = &mut self.desired.sides[number] {
             let found = (self.effects.of(number), self.effects.is_old(number));
             let before = side.graph.clone();
-            self.panel
-                .show(ui, &info.graph, side, other.as_ref(), found);
+            let name = ["B", "A"][number.min(1)];
+            let other = other.as_ref().map(|other| (name, other));
+            self.panel.show(ui, &info.graph, side, other, found);
             if side.graph != before {
                 let side = side.clone();
                 self.desired.sides[number] = Some(self.with_graph(&side, &side.graph));
             }
         }
-    }
-
-    pub(super) fn right(&mut self, ui: &mut Ui, textures: &[TextureId]) {
-        ui.horizontal_wrapped(|ui| {
-            // All of them in one row.
-            ui.spacing_mut().item_spacing.x = 1.0;
-            ui.spacing_mut().button_padding.x = 3.0;
-            for tab in TABS {
-                let title = egui::RichText::new(tab.title).size(12.0);
-                let is_open = self.tabs.open.title == tab.title;
-                if ui.selectable_label(is_open, title).clicked() {
-                    self.tabs.open = tab;
-                }
-            }
-        });
-        ui.separator();
-        // What no tab shows need not be made.
-        self.desired.read_back = None;
-        (self.tabs.open.show)(self, ui, textures);
     }
 
     pub(super) fn shortcuts(&mut self, ui: &Ui) {

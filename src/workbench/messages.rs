@@ -4,7 +4,7 @@
 use crate::diagnostics::{Diagnostic, Place, Severity};
 use crate::workbench::engine::Order;
 use crate::workbench::{Side, Workbench, editor};
-use egui::{Align2, Color32, Rect, RichText, Ui};
+use egui::{Align2, Rect, RichText, Ui};
 
 /// The end of a message after which the device has to be restarted.
 const RESTART: &str = "Restart device";
@@ -60,7 +60,7 @@ impl Workbench {
             return;
         };
         ui.horizontal_wrapped(|ui| {
-            ui.colored_label(AMBER, &trouble);
+            ui.colored_label(ui.visuals().warn_fg_color, &trouble);
             let mut done = ui.small_button("dismiss").clicked();
             if trouble.contains(RESTART) && ui.small_button(RESTART).clicked() {
                 self.engine.order(Order::Restart);
@@ -90,7 +90,7 @@ impl Workbench {
             n => format!(" (and {} more on the Scene tab)", n - 1),
         };
         ui.horizontal_wrapped(|ui| {
-            ui.colored_label(AMBER, format!("scene: {first}{more}"));
+            ui.colored_label(ui.visuals().warn_fg_color, format!("scene: {first}{more}"));
             let dismiss = ui.small_button("dismiss");
             let dismiss = dismiss.on_hover_text("It stays on the Scene tab");
             self.scene.warned = !dismiss.clicked();
@@ -102,9 +102,12 @@ impl Workbench {
 fn side_rows(ui: &mut Ui, side: &Side, name: &str) -> Option<Place> {
     if !side.errors.is_empty() {
         let count = side.errors.len();
-        let text = format!("{name} shows the last good picture: {count} to mend in the files");
+        let text = match count {
+            1 => format!("1 error: {name} still shows the last good build"),
+            n => format!("{n} errors: {name} still shows the last good build"),
+        };
         ui.horizontal_wrapped(|ui| {
-            ui.colored_label(RED, text);
+            ui.colored_label(ui.visuals().error_fg_color, text);
             let copy = ui.small_button("copy");
             if copy.on_hover_text("All of these messages").clicked() {
                 let texts: Vec<String> = side.errors.iter().map(ToString::to_string).collect();
@@ -119,13 +122,10 @@ fn side_rows(ui: &mut Ui, side: &Side, name: &str) -> Option<Place> {
         }
     }
     for check in &side.checks {
-        ui.colored_label(AMBER, check);
+        ui.colored_label(ui.visuals().warn_fg_color, check);
     }
     open
 }
-
-pub(super) const RED: Color32 = Color32::from_rgb(255, 110, 90);
-pub(super) const AMBER: Color32 = Color32::from_rgb(255, 196, 84);
 
 /// Shows an error; whether its place was clicked on.
 fn diagnostic(ui: &mut Ui, d: &Diagnostic) -> bool {
@@ -138,9 +138,9 @@ fn diagnostic(ui: &mut Ui, d: &Diagnostic) -> bool {
         }
     }
     let colour = if d.severity == Severity::Error {
-        RED
+        ui.visuals().error_fg_color
     } else {
-        AMBER
+        ui.visuals().warn_fg_color
     };
     let text = RichText::new(format!("{at}: {}", d.message))
         .color(colour)

@@ -6,6 +6,7 @@
 mod background;
 mod bar;
 pub mod desired;
+mod dock;
 mod editor;
 pub mod engine;
 pub mod events;
@@ -21,7 +22,9 @@ mod pending;
 pub mod picture;
 mod poll;
 pub mod read_back;
+pub mod session;
 mod tabs;
+mod theme;
 mod watch;
 
 use crate::diagnostics::Diagnostic;
@@ -45,7 +48,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tabs::TABS;
-use tabs::tables::Tables;
 
 /// Pictures that hosts keep for the interface: A, B, the comparison, the inspector.
 pub const PICTURES: usize = 4;
@@ -119,6 +121,8 @@ pub struct Options {
     pub execution: Execution,
     /// File for the log of events.
     pub events: Option<PathBuf>,
+    /// What of the last session comes back.
+    pub restore: session::Restore,
 }
 
 /// The workbench.
@@ -139,6 +143,8 @@ pub struct Workbench {
     view: view::View,
     tabs: tabs::Tabs,
     layout: layout::Layout,
+    dock: dock::Dock,
+    session: session::Session,
     messages: messages::Messages,
     comparison: difference::Comparison,
     /// New pixels for the host.
@@ -213,6 +219,10 @@ struct OpenExperiment {
     file: Option<Experiment>,
     /// Its file as last saved from here. That change needs no reload.
     written: Option<PathBuf>,
+    /// Its state when it was opened or saved; absent until its scene is loaded.
+    baseline: Option<opening::Edited>,
+    /// Files that were opened, the latest first.
+    recent: Vec<PathBuf>,
 }
 
 #[derive(Default)]
@@ -236,16 +246,20 @@ impl Workbench {
     /// # Errors
     /// A log that cannot be written.
     pub fn new(options: Options, wake: Wake) -> Result<Workbench, LabError> {
-        let experiment = options.experiment;
+        let root = options.home.root.clone();
+        let (session, [a, b]) = session::start(&root, options.restore, options.file);
+        let experiment = a.unwrap_or(options.experiment);
         let events = options.events.as_deref().map(Events::new).transpose();
         let events = events
             .map_err(|e| LabError::Request(format!("cannot write the log of events: {e}")))?;
-        let root = options.home.root.clone();
         let (home, gpu) = (options.home, options.gpu);
         let engine = Engine::start(home.clone(), gpu.clone(), wake.clone());
         let mut watch = watch::Watch::new(&root, wake.clone());
         let desired = RenderRequest {
-            sides: [Some(SideRequest::of(&experiment)), None],
+            sides: [
+                Some(SideRequest::of(&experiment)),
+                b.as_ref().map(SideRequest::of),
+            ],
             scene: experiment.scene.clone(),
             environment: picture_of(&experiment),
             size: options.size.unwrap_or((0, 0)),
@@ -257,7 +271,7 @@ impl Workbench {
             },
             ..RenderRequest::default()
         };
-        watch.experiment(&options.file);
+        watch.experiment(&session.file);
         crate::results::capture::sweep_partials(&root.join("captures"));
         let trouble = watch.trouble.clone();
         Ok(Workbench {
@@ -272,6 +286,8 @@ impl Workbench {
                 name: experiment.name.clone(),
                 file: Some(experiment),
                 written: None,
+                baseline: None,
+                recent: Vec::new(),
             },
             device: None,
             undo: Undo::default(),
@@ -280,6 +296,8 @@ impl Workbench {
             view: view::View::default(),
             tabs: tabs::Tabs::default(),
             layout: layout::Layout::new(options.size),
+            dock: dock::Dock::default(),
+            session,
             messages: messages::Messages {
                 status: String::new(),
                 trouble,
@@ -344,12 +362,23 @@ impl Workbench {
         }
     }
 
-    /// Opens the tables if a click fills one.
-    fn show_tables(&mut self) {
+    /// Whether a point of the picture is chosen.
+    fn is_pointed(&self) -> bool {
+        let pointer = self.sides[0]
+            .info
+            .as_ref()
+            .and_then(|i| i.graph.pointer.as_ref());
+        let side = self.desired.sides[0].as_ref();
+        let value = pointer
+            .zip(side)
+            .and_then(|(name, side)| side.params.iter().find(|p| p.0 == *name).map(|p| &p.1));
+        matches!(value, Some(crate::graph::param::Value::Vector(v)) if v.first() >= Some(&0.0))
+    }
+
+    /// Whether a click on the picture fills a table.
+    fn click_fills_tables(&self) -> bool {
         let fills = |o: &Arc<GraphInfo>| o.graph.pointer.is_some() && !o.graph.tables.is_empty();
-        if self.sides[0].info.as_ref().is_some_and(fills) {
-            self.tabs.open::<Tables>();
-        }
+        self.sides[0].info.as_ref().is_some_and(fills)
     }
 
     /// Sends the desired state to the engine, if it changed.
@@ -391,19 +420,15 @@ impl Workbench {
         self.shortcuts(ui);
         egui::Panel::top("bar").show(ui, |ui| self.bar(ui));
         egui::Panel::bottom("status").show(ui, |ui| self.status_line(ui));
-        if !self.layout.hidden {
-            egui::Panel::left("parameters")
-                .default_size(340.0)
-                .size_range(180.0..=640.0)
-                .show(ui, |ui| self.parameters(ui));
-            egui::Panel::right("right")
-                .default_size(350.0)
-                .size_range(180.0..=760.0)
-                .show(ui, |ui| self.right(ui, textures));
-        }
-        let middle = self.tabs.open.middle;
-        let central = egui::CentralPanel::no_frame().show(ui, |ui| middle(self, ui, textures));
-        let place = central.response.rect;
+        egui::CentralPanel::no_frame().show(ui, |ui| match self.layout.hidden {
+            true => {
+                self.desired.read_back.clear();
+                self.dock.middle = ui.max_rect();
+                self.picture(ui, textures);
+            }
+            false => self.dock(ui, textures),
+        });
+        let place = self.dock.middle;
         self.messages(ui, place);
         if self.layout.help {
             self.help_window(ui, place);
@@ -412,6 +437,10 @@ impl Workbench {
             self.dropped(&path);
         }
         self.fit_size(ui);
+        self.note_baseline();
+        self.set_title(ui.ctx());
+        self.close_question(ui);
+        self.keep_session(ui);
         let held = ui.input(|i| i.pointer.any_down()) || ui.ctx().egui_wants_keyboard_input();
         self.remember(held);
         if self.desired.sides[1].is_none() {

@@ -2,12 +2,24 @@
 
 use crate::experiment::Experiment;
 use crate::lab::viewpoint_of;
-use crate::workbench::desired::request::SideRequest;
+use crate::workbench::desired::request::{LightState, SideRequest};
 use crate::workbench::desired::save;
 use crate::workbench::{Workbench, watch};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;
+
+/// Files that are remembered.
+const RECENT: usize = 12;
+
+/// What of the state an experiment's file keeps, but for the camera.
+#[derive(Default, PartialEq)]
+pub(super) struct Edited {
+    side: SideRequest,
+    scene: String,
+    environment: String,
+    lights: Option<LightState>,
+}
 
 impl Workbench {
     pub(super) fn files_changed(&mut self, changed: &watch::Changed) {
@@ -65,6 +77,7 @@ impl Workbench {
         let before = self.missing_scene().is_none().then(|| self.state());
         self.undo.history.opens();
         self.experiment.name.clone_from(&experiment.name);
+        self.experiment.baseline = None;
         self.desired.sides[0] = Some(SideRequest::of(experiment));
         if self.desired.scene == experiment.scene
             && self.desired.environment == picture_of(experiment)
@@ -128,10 +141,12 @@ impl Workbench {
     /// A file was dropped on the window.
     pub fn dropped(&mut self, path: &Path) {
         let spec = path.to_string_lossy().into_owned();
+        self.opened_file(path);
         let is_ron = crate::files::ending(path) == "ron";
         match Experiment::read(path) {
             Ok(experiment) if is_ron => {
                 self.watch.experiment(path);
+                self.session.file = path.to_path_buf();
                 self.open(&experiment);
             }
             _ => {
@@ -140,6 +155,46 @@ impl Workbench {
             }
         }
         self.send_request();
+    }
+
+    /// Puts a file at the head of the recent ones.
+    pub(super) fn opened_file(&mut self, path: &Path) {
+        let recent = &mut self.experiment.recent;
+        recent.retain(|other| other != path);
+        recent.insert(0, path.to_path_buf());
+        recent.truncate(RECENT);
+    }
+
+    /// What saving the experiment would keep. The camera is left out: looking around is no edit.
+    fn edited(&self) -> Edited {
+        let pointer = self.sides[0].info.as_ref();
+        let pointer = pointer.and_then(|i| i.graph.pointer.as_deref());
+        let side = self.desired.sides[0].clone().unwrap_or_default();
+        Edited {
+            side: sorted(save::without_pointer(&side, pointer)),
+            scene: self.desired.scene.clone(),
+            environment: self.desired.environment.clone(),
+            lights: self.desired.lights.clone(),
+        }
+    }
+
+    /// Remembers the experiment as it was opened, once its scene is there.
+    pub(super) fn note_baseline(&mut self) {
+        let is_there = self.missing_scene().is_none() && self.experiment.file.is_none();
+        if self.experiment.baseline.is_none() && is_there && self.sides[0].info.is_some() {
+            self.saved_state();
+        }
+    }
+
+    /// Takes the present state for the saved one.
+    pub(super) fn saved_state(&mut self) {
+        self.experiment.baseline = Some(self.edited());
+    }
+
+    /// Whether the experiment differs from its file.
+    pub(super) fn modified(&self) -> bool {
+        let baseline = self.experiment.baseline.as_ref();
+        baseline.is_some_and(|saved| *saved != self.edited())
     }
 
     /// The present experiment, as side A shows it.

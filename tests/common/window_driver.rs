@@ -74,6 +74,7 @@ impl Drop for Screen {
 
 pub struct WindowDriver {
     pub home: TempDir,
+    display: String,
     program: Child,
     x: RustConnection,
     root: Window,
@@ -118,6 +119,35 @@ fn screen() -> (Screen, String) {
     (Screen(server), format!(":{}", number.trim()))
 }
 
+/// The program in a folder of its own, on a screen, and its log of events.
+fn spawn(
+    home: &TempDir,
+    display: &str,
+    log: &str,
+    args: &[&str],
+    variables: &[(&str, &str)],
+) -> (Child, BufReader<File>) {
+    let path = home.path().join(log);
+    File::create(&path).unwrap();
+    let mut program = conelab(home.path());
+    program.arg("view").args(args).args(["--events", log]);
+    if !args.is_empty() {
+        program.args(["--window", &format!("{}x{}", WINDOW.0, WINDOW.1)]);
+    }
+    let program = program
+        .env("DISPLAY", display)
+        .env("CONELAB_CACHE", home.path().join("cache"))
+        .env("WINIT_X11_SCALE_FACTOR", "1")
+        .envs(variables.iter().copied())
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .stdout(Stdio::null())
+        .stderr(File::create(home.path().join("stderr")).unwrap())
+        .spawn()
+        .unwrap();
+    (program, BufReader::new(File::open(path).unwrap()))
+}
+
 impl WindowDriver {
     /// The program on a copy of passes, shaders and configs, with an experiment (RON) that is opened, and arguments.
     #[track_caller]
@@ -132,34 +162,14 @@ impl WindowDriver {
         let home = crate::common::home();
         std::fs::write(home.path().join("configs/opened.ron"), experiment).unwrap();
         let (server, display) = screen();
-        let log = home.path().join("events.jsonl");
-        File::create(&log).unwrap();
-        let window = format!("{}x{}", WINDOW.0, WINDOW.1);
-        let program = conelab(home.path())
-            .args([
-                "view",
-                "configs/opened.ron",
-                "--events",
-                "events.jsonl",
-                "--window",
-                &window,
-            ])
-            .args(args)
-            .env("DISPLAY", &display)
-            .env("CONELAB_CACHE", home.path().join("cache"))
-            .env("WINIT_X11_SCALE_FACTOR", "1")
-            .envs(variables.iter().copied())
-            .env_remove("WAYLAND_DISPLAY")
-            .env_remove("WAYLAND_SOCKET")
-            .stdout(Stdio::null())
-            .stderr(File::create(home.path().join("stderr")).unwrap())
-            .spawn()
-            .unwrap();
+        let mut all = vec!["configs/opened.ron"];
+        all.extend(args);
+        let (program, log) = spawn(&home, &display, "events.jsonl", &all, variables);
         let (x, number) = x11rb::connect(Some(&display)).unwrap();
         let root = x.setup().roots[number].root;
-        let log = BufReader::new(File::open(log).unwrap());
         let mut driver = WindowDriver {
             home,
+            display,
             program,
             x,
             root,
@@ -171,17 +181,50 @@ impl WindowDriver {
             _screen: server,
             _one: one,
         };
+        driver.find_window();
+        driver
+    }
+
+    #[track_caller]
+    fn find_window(&mut self) {
         let until = Instant::now() + PATIENCE;
-        driver.window = loop {
-            if let Some(window) = driver.windows() {
+        self.window = loop {
+            if let Some(window) = self.windows() {
                 break window;
             }
-            assert!(Instant::now() < until, "no window\n{}", driver.stderr());
+            assert!(Instant::now() < until, "no window\n{}", self.stderr());
             std::thread::sleep(Duration::from_millis(20));
         };
         // There is no window manager to do it.
-        driver.focus();
-        driver
+        self.focus();
+    }
+
+    /// Kills the program and starts it again in the same folder, without an experiment.
+    #[track_caller]
+    pub fn kill_and_restart(&mut self) {
+        self.program.kill().unwrap();
+        self.program.wait().unwrap();
+        let (program, log) = spawn(&self.home, &self.display, "again.jsonl", &[], &[]);
+        (self.program, self.log) = (program, log);
+        self.line.clear();
+        self.events.clear();
+        self.known.clear();
+        self.find_window();
+    }
+
+    /// The window's title.
+    pub fn title(&self) -> String {
+        let atom = |name: &[u8]| {
+            self.x
+                .intern_atom(false, name)
+                .unwrap()
+                .reply()
+                .unwrap()
+                .atom
+        };
+        let (name, kind) = (atom(b"_NET_WM_NAME"), atom(b"UTF8_STRING"));
+        let property = self.x.get_property(false, self.window, name, kind, 0, 64);
+        String::from_utf8(property.unwrap().reply().unwrap().value).unwrap()
     }
 
     fn windows(&self) -> Option<Window> {
@@ -193,7 +236,7 @@ impl WindowDriver {
                 .unwrap()
                 .reply();
             let mapped = self.x.get_window_attributes(*w).unwrap().reply();
-            name.is_ok_and(|n| n.value == b"conelab")
+            name.is_ok_and(|n| n.value.ends_with(b"conelab"))
                 && mapped.is_ok_and(|m| m.map_state == MapState::VIEWABLE)
         })
     }
@@ -557,9 +600,8 @@ impl WindowDriver {
         self.focus();
     }
 
-    /// Closes the window as its frame's button would; the exit code, and how long it took.
-    #[track_caller]
-    pub fn close(&mut self) -> Duration {
+    /// Presses the button of the window's frame that closes it.
+    pub fn ask_to_close(&self) {
         let atom = |name: &[u8]| {
             self.x
                 .intern_atom(false, name)
@@ -575,7 +617,21 @@ impl WindowDriver {
             .unwrap()
             .check()
             .unwrap();
+    }
+
+    /// Closes the window as its frame's button would, whatever was changed; how long it took.
+    #[track_caller]
+    pub fn close(&mut self) -> Duration {
         let start = Instant::now();
+        self.ask_to_close();
+        // The second time it does not ask about changes.
+        self.ask_to_close();
+        self.end(start)
+    }
+
+    /// Waits until the program has ended without an error; how long it took.
+    #[track_caller]
+    pub fn end(&mut self, start: Instant) -> Duration {
         loop {
             if let Some(status) = self.program.try_wait().unwrap() {
                 assert_eq!(status.code(), Some(0), "{}", self.stderr());

@@ -153,8 +153,8 @@ pub struct RenderRequest {
     pub revision: u64,
     /// Number of changes of the scene's files.
     pub scene_revision: u64,
-    /// The resource that the open tab shows.
-    pub read_back: Option<ReadBack>,
+    /// The resources that the visible panes show.
+    pub read_back: Vec<ReadBack>,
     /// The device that paints the pictures; with one of the same kind they stay in its memory.
     pub window: Option<DeviceId>,
     /// Whether every picture is wanted in main memory; the last one before a rest comes there all

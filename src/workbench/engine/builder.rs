@@ -22,7 +22,7 @@ pub struct Key {
     /// Which scene was loaded.
     pub scene: u64,
     /// A further resource to read back.
-    pub wanted: Option<String>,
+    pub wanted: Vec<String>,
 }
 
 /// Something to build.

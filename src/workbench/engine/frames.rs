@@ -193,7 +193,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Reads back the content for a tab: at once if nothing changes, else several times a second.
+    /// Reads back the content for panes: at once if nothing changes, else several times a second.
     fn read_back(&mut self, number: usize) -> Result<(), LabError> {
         let side = &mut self.sides[number];
         let Some(session) = side.session.as_mut().filter(|_| !side.preview) else {
@@ -201,8 +201,8 @@ impl Run<'_> {
         };
         let now =
             side.frames_left == 0 || self.last_read_back.elapsed() > Duration::from_millis(150);
-        let asked = self.desired.read_back.as_ref();
-        if let Some(asked) = asked.filter(|asked| now && asked.side() == number) {
+        let asked = self.desired.read_back.iter();
+        for asked in asked.filter(|asked| now && asked.side() == number) {
             self.last_read_back = Instant::now();
             if let Some(content) = asked.read(session)? {
                 self.out.send(Report::Content(content));

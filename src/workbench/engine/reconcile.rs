@@ -14,11 +14,10 @@ use std::time::Instant;
 
 impl Run<'_> {
     pub(super) fn key(&self, side: &SideRequest, number: usize) -> Key {
-        let asked = self.desired.read_back.as_ref();
         let graph = self.sides[number].loaded.as_ref().map(|l| &*l.graph);
-        let wanted = asked
-            .filter(|asked| asked.side() == number)
-            .and_then(|asked| asked.resource(graph));
+        let asked = self.desired.read_back.iter();
+        let asked = asked.filter(|asked| asked.side() == number);
+        let wanted = asked.filter_map(|asked| asked.resource(graph)).collect();
         Key {
             side: side.clone(),
             size: self.desired.size,

@@ -6,7 +6,7 @@ use crate::files::FileError;
 use crate::lab::LabError;
 use crate::results::stats::{Spread, spread};
 use crate::vulkan::{Gpu, GpuOptions, Painter, Pixels};
-use crate::workbench::{NewPixels, Options, PICTURES, Workbench};
+use crate::workbench::{NewPixels, Options, PICTURES, Workbench, theme};
 use crossbeam_channel::{Receiver, unbounded};
 use egui::accesskit::{Node, NodeId};
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, TextureId, Vec2};
@@ -120,6 +120,7 @@ pub fn take(options: Options, gpu: &GpuOptions, script: Script) -> Result<Shot, 
         Workbench::new(options, Arc::new(move || wake.send(()).unwrap_or_default()))?;
     workbench.paints_on(gpu.info.id);
     let context = egui::Context::default();
+    theme::install(&context);
     context.enable_accesskit();
     let start = Instant::now();
     let mut host = Host {

@@ -3,7 +3,7 @@
 
 use crate::lab::LabError;
 use crate::vulkan::{Gpu, GpuOptions, Painter, Pixels, Surface, VulkanError};
-use crate::workbench::{NewPixels, Options, PICTURES, Workbench};
+use crate::workbench::{NewPixels, Options, PICTURES, Workbench, theme};
 use egui::{TextureId, ViewportId};
 use raw_window_handle::HasDisplayHandle;
 use std::sync::Arc;
@@ -21,8 +21,8 @@ struct WindowWake;
 pub struct WindowOptions {
     /// The device that paints the window.
     pub gpu: GpuOptions,
-    /// Width and height in points.
-    pub size: (u32, u32),
+    /// Width and height in points; most of the monitor if absent.
+    pub size: Option<(u32, u32)>,
 }
 
 /// A window that is open.
@@ -42,6 +42,8 @@ struct App {
     error: Option<LabError>,
     repaint_at: Option<Instant>,
     messages: Vec<String>,
+    /// Whether the interface asked to close the window.
+    closes: bool,
 }
 
 /// Opens the workbench in a window and runs until it is closed.
@@ -61,14 +63,17 @@ pub fn run(options: Options, window: WindowOptions) -> Result<(), LabError> {
         options,
         Arc::new(move || drop(proxy.send_event(WindowWake))),
     )?;
+    let context = egui::Context::default();
+    theme::install(&context);
     let mut app = App {
         workbench: Some(workbench),
         options: window,
-        context: egui::Context::default(),
+        context,
         open: None,
         error: None,
         repaint_at: None,
         messages: Vec::new(),
+        closes: false,
     };
     let ran = event_loop.run_app(&mut app);
     app.close();
@@ -81,17 +86,22 @@ pub fn run(options: Options, window: WindowOptions) -> Result<(), LabError> {
 
 impl App {
     fn create(&mut self, event_loop: &ActiveEventLoop) -> Result<Open, LabError> {
-        let (width, height) = self.options.size;
         let monitor = event_loop
             .primary_monitor()
             .or_else(|| event_loop.available_monitors().next());
         let size = match monitor {
-            Some(m) => clamped(
-                (width, height),
-                m.scale_factor(),
-                (m.size().width, m.size().height),
-            ),
-            None => LogicalSize::new(f64::from(width), f64::from(height)),
+            Some(m) => {
+                let (pixels, scale) = (m.size(), m.scale_factor());
+                let part = |pixels: u32| (PART * f64::from(pixels) / scale) as u32;
+                let most = Some((part(pixels.width), part(pixels.height)));
+                let most = most.filter(|size| size.0 > 0 && size.1 > 0);
+                let size = self.options.size.or(most).unwrap_or(SIZE);
+                clamped(size, scale, (pixels.width, pixels.height))
+            }
+            None => {
+                let (width, height) = self.options.size.unwrap_or(SIZE);
+                LogicalSize::new(f64::from(width), f64::from(height))
+            }
         };
         let attributes = Window::default_attributes()
             .with_title("conelab")
@@ -148,9 +158,13 @@ impl App {
             .handle_platform_output(&open.window, output.platform_output);
         let viewport = output.viewport_output.get(&ViewportId::ROOT);
         for command in viewport.iter().flat_map(|v| &v.commands) {
-            if let egui::ViewportCommand::Fullscreen(on) = command {
-                open.window
-                    .set_fullscreen(on.then_some(winit::window::Fullscreen::Borderless(None)));
+            match command {
+                egui::ViewportCommand::Fullscreen(on) => open
+                    .window
+                    .set_fullscreen(on.then_some(winit::window::Fullscreen::Borderless(None))),
+                egui::ViewportCommand::Title(title) => open.window.set_title(title),
+                egui::ViewportCommand::Close => self.closes = true,
+                _ => {}
             }
         }
         let primitives = self
@@ -182,7 +196,8 @@ impl App {
     }
 
     fn close(&mut self) {
-        if let Some(workbench) = self.workbench.take() {
+        if let Some(mut workbench) = self.workbench.take() {
+            workbench.write_session(&self.context);
             self.messages.extend(workbench.close());
         }
         if let Some(Open {
@@ -205,6 +220,13 @@ impl App {
         }
     }
 }
+
+/// Part of the monitor's width and height that a new window takes: bars of the system remain
+/// visible.
+const PART: f64 = 0.85;
+
+/// Size of a new window where the monitor's is unknown, points.
+const SIZE: (u32, u32) = (1600, 900);
 
 /// A size in points that fits a monitor of this size in pixels.
 fn clamped(points: (u32, u32), scale: f64, monitor: (u32, u32)) -> LogicalSize<f64> {
@@ -249,7 +271,13 @@ impl ApplicationHandler<WindowWake> for App {
             open.window.request_redraw();
         }
         match event {
-            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::CloseRequested => {
+                let workbench = self.workbench.as_mut();
+                if workbench.is_none_or(Workbench::may_close) {
+                    event_loop.exit();
+                }
+                open.window.request_redraw();
+            }
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
                 open.painter.resized();
                 open.window.request_redraw();
@@ -262,6 +290,9 @@ impl ApplicationHandler<WindowWake> for App {
             WindowEvent::RedrawRequested => {
                 let painted = self.paint();
                 self.check(painted, event_loop);
+                if self.closes {
+                    event_loop.exit();
+                }
             }
             _ => {}
         }

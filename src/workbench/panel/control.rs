@@ -1,56 +1,117 @@
 //! The control of a parameter, by its kind.
 
 use crate::graph::param::{Kind, Param, Value};
-use egui::{Color32, DragValue, Response, RichText, Ui, WidgetInfo};
+use egui::{DragValue, Response, RichText, Ui, WidgetInfo};
 
-/// Colour of values that are not at their default.
-pub(crate) const CHANGED: Color32 = Color32::from_rgb(255, 196, 84);
+/// How a row looks.
+pub(crate) struct Look {
+    /// Whether the value is not the default.
+    pub changed: bool,
+    /// Whether it has no effect now.
+    pub idle: bool,
+    /// The number that a default stands for, if the graph chooses it.
+    pub auto: Option<f64>,
+}
 
-/// Shows a value under a title; edits go into it. `auto`: the number that a default stands for, if
-/// the graph chooses it.
+/// Width of the button that resets a row, points.
+const RESET: f32 = 20.0;
+/// Width of a number with its unit, and without, points.
+const NUMBER: [f32; 2] = [86.0, 58.0];
+
+/// A row narrower than this leaves units to the tooltip, points.
+const NARROW: f32 = 300.0;
+
+/// Width of the column of labels, points.
+pub(crate) fn label_width(ui: &Ui) -> f32 {
+    (0.34 * ui.available_width()).clamp(72.0, 150.0)
+}
+
+/// A label of that width; the whole text is in the tooltip if it is cut.
+pub(crate) fn label(ui: &mut Ui, width: f32, text: RichText) -> Response {
+    let size = egui::vec2(width, ui.spacing().interact_size.y);
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let shown = ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_min_width(width);
+        ui.add(egui::Label::new(text).truncate())
+    });
+    shown.inner
+}
+
+/// The button at the end of a row that sets the default again. Its place is kept when it is hidden.
+pub(crate) fn reset_button(ui: &mut Ui, visible: bool, name: &str) -> bool {
+    let right = egui::Layout::right_to_left(egui::Align::Center);
+    ui.with_layout(right, |ui| {
+        let icon = RichText::new(egui_phosphor::regular::ARROW_COUNTER_CLOCKWISE);
+        let reset = ui.add_visible(visible, egui::Button::new(icon).frame(false));
+        let name = format!("reset {name}");
+        named(&reset, egui::WidgetType::Button, &name);
+        reset.on_hover_text("Back to the default").clicked()
+    })
+    .inner
+}
+
+/// Shows a value behind its title; edits go into it.
 pub(crate) fn control(
     ui: &mut Ui,
     param: &Param,
     title: &str,
     value: &mut Value,
-    (changed, auto): (bool, Option<f64>),
+    look: &Look,
 ) -> Response {
-    if let Some(auto) = auto
-        && let Some(response) = automatic(ui, param, title, value, auto)
-    {
-        return response;
-    }
-    let name = match changed {
-        true => RichText::new(title).color(CHANGED),
-        false => RichText::new(title),
+    let name = match (look.changed, look.idle) {
+        (true, _) => RichText::new(title).color(ui.visuals().warn_fg_color),
+        (false, true) => RichText::new(title).weak().italics(),
+        (false, false) => RichText::new(title),
     };
-    match (value, &param.kind) {
-        (Value::Bool(v), _) => ui.checkbox(v, name),
+    let narrow = ui.available_width() < NARROW;
+    let width = label_width(ui);
+    let label = label(ui, width, name);
+    if look.idle {
+        // The contrast stays above 4.5:1.
+        ui.multiply_opacity(ui.visuals().disabled_alpha);
+    }
+    let spare = ui.available_width() - RESET - ui.spacing().item_spacing.x;
+    let gap = ui.spacing().item_spacing.x;
+    ui.spacing_mut().slider_width = (spare - NUMBER[usize::from(narrow)] - 2.0 * gap).max(16.0);
+    ui.spacing_mut().combo_width = spare.max(60.0);
+    if let Some(auto) = look.auto
+        && let Some(response) = automatic(ui, param, title, value, (auto, narrow))
+    {
+        return response.labelled_by(label.id) | label;
+    }
+    let response = match (value, &param.kind) {
+        (Value::Bool(v), _) => {
+            let tick = ui.checkbox(v, "");
+            let on = *v;
+            tick.widget_info(|| WidgetInfo::selected(egui::WidgetType::Checkbox, true, on, title));
+            tick
+        }
         (Value::Int(v), _) => {
             let bounds = bounds(param).map(|(low, high)| (low as i64, high as i64));
             let (low, high) = bounds.unwrap_or((i32::MIN.into(), i32::MAX.into()));
             let slid = bounds.map(|range| slider(ui, param, title, v, range));
-            let number = DragValue::new(v).suffix(unit(param)).range(low..=high);
+            let number = DragValue::new(v)
+                .suffix(unit(param, narrow))
+                .range(low..=high);
             let number = number.speed(param.step.unwrap_or(0.1));
-            joined(slid, spin(ui, number, title), ui.label(name))
+            joined(slid, wide(ui, number, title, narrow))
         }
         (Value::Float(v), _) => {
             let bounds = bounds(param);
             let slid = bounds.map(|range| slider(ui, param, title, v, range));
             let speed = bounds.map_or(0.01, |(low, high)| (high - low) / 500.0);
-            let number = number(v, param, speed).suffix(unit(param)).max_decimals(6);
-            joined(slid, spin(ui, number, title), ui.label(name))
+            let number = number(v, param, speed)
+                .suffix(unit(param, narrow))
+                .max_decimals(6);
+            joined(slid, wide(ui, number, title, narrow))
         }
-        (Value::Vector(v), Kind::Colour) if v.len() == 3 => {
-            joined(None, colour(ui, v), ui.label(name))
-        }
+        (Value::Vector(v), Kind::Colour) if v.len() == 3 => colour(ui, v),
         (Value::Vector(v), _) => {
             let axes = v.iter_mut().zip(["x", "y", "z", "w"]);
             let numbers =
                 axes.map(|(x, axis)| spin(ui, number(x, param, 0.01), &format!("{title} {axis}")));
             let numbers = numbers.reduce(|a, b| a | b);
-            let label = ui.label(name);
-            numbers.map_or(label.clone(), |n| n | label)
+            numbers.unwrap_or_else(|| label.clone())
         }
         (Value::Choice(v), Kind::Choice(options)) => {
             let combo = egui::ComboBox::from_id_salt(("choice", title)).selected_text(v.as_str());
@@ -60,11 +121,11 @@ pub(crate) fn control(
                     choice_row(ui, v, option, help);
                 }
             });
-            let label = ui.label(name);
-            shown.response.labelled_by(label.id) | label
+            shown.response
         }
         (Value::Choice(v), _) => ui.label(v.as_str()),
-    }
+    };
+    response.labelled_by(label.id) | label
 }
 
 fn colour(ui: &mut Ui, value: &mut Vec<f64>) -> Response {
@@ -92,8 +153,9 @@ fn bounds(param: &Param) -> Option<(f64, f64)> {
     range.filter(|(low, high)| low.is_finite() && high.is_finite())
 }
 
-fn unit(param: &Param) -> String {
+fn unit(param: &Param, narrow: bool) -> String {
     match param.unit.as_str() {
+        _ if narrow => String::new(),
         "" => String::new(),
         unit => format!(" {unit}"),
     }
@@ -115,24 +177,28 @@ fn automatic(
     param: &Param,
     title: &str,
     value: &mut Value,
-    auto: f64,
+    (auto, narrow): (f64, bool),
 ) -> Option<Response> {
     let default = param.default.number()?;
     let (low, high) = param.range?;
     let (mut now, shown) = (auto, short_number(auto));
-    let chosen = format!("auto ({shown}{})", unit(param));
+    let chosen = format!("auto ({shown}{})", unit(param, false));
+    let brief = match narrow {
+        true => shown,
+        false => chosen.clone(),
+    };
     let name = format!("{title}, {chosen}");
     let slid = slider(ui, param, title, &mut now, (low, high));
     let field = number(&mut now, param, (high - low) / 500.0)
         .custom_formatter(move |x, _| match x == auto {
-            true => chosen.clone(),
+            true => brief.clone(),
             false => short_number(x),
         })
         .custom_parser(move |text| match text.trim().starts_with("auto") {
             true => Some(default),
             false => text.trim().parse().ok(),
         });
-    let response = joined(Some(slid), spin(ui, field, &name), ui.label(title));
+    let response = joined(Some(slid), wide(ui, field, &name, narrow));
     if now != auto {
         *value = match value {
             Value::Int(_) => Value::Int(now.round() as i64),
@@ -173,7 +239,16 @@ fn slider<N: egui::emath::Numeric>(
 
 /// A field for a number, labelled with its name.
 pub(crate) fn spin(ui: &mut Ui, field: DragValue<'_>, name: &str) -> Response {
-    let response = ui.add(field);
+    labelled(ui.add(field), name)
+}
+
+/// A field for a number as wide as those of the other rows.
+fn wide(ui: &mut Ui, field: DragValue<'_>, name: &str, narrow: bool) -> Response {
+    let size = egui::vec2(NUMBER[usize::from(narrow)], ui.spacing().interact_size.y);
+    labelled(ui.add_sized(size, field), name)
+}
+
+fn labelled(response: Response, name: &str) -> Response {
     response.widget_info(|| WidgetInfo::labeled(egui::WidgetType::DragValue, true, name));
     response
 }
@@ -191,7 +266,9 @@ pub(crate) fn small_button(ui: &mut Ui, text: &str, name: &str, about: &str) -> 
     button.on_hover_text(about).clicked()
 }
 
-fn joined(slider: Option<Response>, control: Response, label: Response) -> Response {
-    let control = control.labelled_by(label.id);
-    slider.map_or(control.clone(), |s| s | control) | label
+fn joined(slider: Option<Response>, number: Response) -> Response {
+    match slider {
+        Some(slider) => slider | number,
+        None => number,
+    }
 }

@@ -8,7 +8,7 @@ use crate::graph::effect::Reason;
 use crate::graph::param::Param;
 use crate::workbench::desired::edit;
 use crate::workbench::desired::request::SideRequest;
-use control::{CHANGED, control, named, small_button};
+use control::{Look, control, label, label_width, named, reset_button, small_button};
 use effects::Found;
 use egui::{RichText, Ui, WidgetType};
 
@@ -31,8 +31,8 @@ struct Shown<'a> {
     found: Option<&'a Found>,
     /// Whether that is of other values.
     old: bool,
-    /// The side that it is compared with.
-    other: Option<&'a SideRequest>,
+    /// Name and values of the side that it is compared with.
+    other: Option<(&'static str, &'a SideRequest)>,
 }
 
 /// The parameters that a search finds.
@@ -69,7 +69,7 @@ impl Panel {
         ui: &mut Ui,
         graph: &Graph,
         side: &mut SideRequest,
-        other: Option<&SideRequest>,
+        other: Option<(&'static str, &SideRequest)>,
         (found, old): (Option<&Found>, bool),
     ) {
         self.top(ui, graph, side);
@@ -97,8 +97,8 @@ impl Panel {
             any |= shown.retired(ui, &wanted, side);
             if !any {
                 ui.weak(match self.only_changed && wanted.needle.is_empty() {
-                    true => "nothing is changed",
-                    false => "nothing matches",
+                    true => "Nothing is changed",
+                    false => "Nothing matches",
                 });
             }
         });
@@ -111,7 +111,7 @@ impl Panel {
             egui::Layout::right_to_left(egui::Align::Center),
             |ui| {
                 let any = graph.params.offered().any(|p| is_changed(graph, side, p));
-                let reset = egui::Button::new(RichText::new("reset all")).small();
+                let reset = egui::Button::new(RichText::new("Reset all")).small();
                 if ui.add_enabled(any, reset).clicked() {
                     side.params.clear();
                     side.off.clear();
@@ -171,7 +171,7 @@ impl Shown<'_> {
         let title = if group.is_empty() { "Other" } else { group };
         let title = match of_group().filter(|p| is_changed(graph, side, p)).count() {
             0 => RichText::new(title),
-            n => RichText::new(format!("{title} ({n})")).color(CHANGED),
+            n => RichText::new(format!("{title} ({n})")).color(ui.visuals().warn_fg_color),
         };
         // Groups that a search opens are folded again after it.
         let searching = wanted.is_search();
@@ -224,9 +224,9 @@ impl Shown<'_> {
         ui.horizontal(|ui| {
             if self.old {
                 // A second click would go on from a choice that is on its way.
-                return drop(ui.weak("dimmed: without effect in the picture shown"));
+                return drop(ui.weak("Greyed-out settings have no effect in this picture"));
             }
-            ui.weak("dimmed: without effect unless");
+            ui.weak("Greyed-out settings need");
             if ui
                 .small_button(format!("{name} = {option}"))
                 .on_hover_text(&param.help)
@@ -243,29 +243,31 @@ impl Shown<'_> {
         let changed = is_changed(self.graph, side, param);
         let idle = self.found.and_then(|f| f.idle.get(&param.name));
         ui.horizontal(|ui| {
-            let reset = ui.add_visible(changed, egui::Button::new("↺").small().frame(false));
-            let name = format!("reset {}", param.name);
-            named(&reset, WidgetType::Button, &name);
-            if reset.on_hover_text("Back to the default").clicked() {
-                value = param.default.clone();
-            }
-            if idle.is_some() {
-                ui.multiply_opacity(0.55);
-            }
             let auto = self
                 .found
                 .and_then(|f| f.effective.get(&param.name))
                 .filter(|_| !changed)
                 .copied();
-            let response = control(ui, param, title, &mut value, (changed, auto));
+            let look = Look {
+                changed,
+                idle: idle.is_some(),
+                auto,
+            };
+            let response = control(ui, param, title, &mut value, &look);
             response.on_hover_ui(|ui| help(ui, param, idle));
-            if let Some(other) = self.other {
-                let theirs = edit::value(other, param);
-                if theirs != before {
-                    ui.weak(format!("other: {theirs}"));
-                }
+            if reset_button(ui, changed, &param.name) {
+                value = param.default.clone();
             }
         });
+        if let Some((name, other)) = self.other {
+            let theirs = edit::value(other, param);
+            if theirs != before {
+                ui.horizontal(|ui| {
+                    ui.add_space(label_width(ui) + ui.spacing().item_spacing.x);
+                    ui.weak(format!("{name}: {theirs}"));
+                });
+            }
+        }
         if value != before {
             edit::set(side, param, &value);
         }
@@ -276,8 +278,8 @@ impl Shown<'_> {
 /// name.
 fn elsewhere(ui: &mut Ui, name: &str, title: &str, instead: &str, side: &mut SideRequest) {
     ui.horizontal(|ui| {
-        ui.add_visible(false, egui::Button::new("↺").small().frame(false));
-        ui.weak(title).on_hover_text(format!("{name}: {instead}"));
+        let width = label_width(ui);
+        label(ui, width, RichText::new(title).weak()).on_hover_text(format!("{name}: {instead}"));
         let graph = instead
             .strip_prefix("graph: \"")
             .and_then(|rest| rest.split_once('"'))
@@ -333,11 +335,11 @@ fn help(ui: &mut Ui, param: &Param, idle: Option<&Reason>) {
     if let Some(why) = idle {
         let why = &why.text;
         let text = if why.starts_with("where") {
-            format!("it counts {why}")
+            format!("it is used only {why}")
         } else {
             why.clone()
         };
-        ui.colored_label(CHANGED, format!("changes nothing now: {text}"));
+        ui.colored_label(ui.visuals().warn_fg_color, format!("No effect now: {text}"));
     }
     ui.label(&param.help);
     let mut facts = vec![format!("default {}", param.default)];
@@ -348,7 +350,7 @@ fn help(ui: &mut Ui, param: &Param, idle: Option<&Reason>) {
         facts.push(param.unit.clone());
     }
     if param.is_compiled() {
-        facts.push("a constant of its shaders: a change compiles them again".into());
+        facts.push("compile-time constant: changing it recompiles shaders".into());
     }
     ui.weak(facts.join(", "));
 }

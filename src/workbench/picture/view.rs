@@ -5,7 +5,7 @@ use super::motion;
 use super::zoom::{Zoom, foot, pixel_at, pixel_text};
 use crate::results::timers::Rows;
 use crate::workbench::panel::control::spin;
-use crate::workbench::{COMPARISON, Workbench};
+use crate::workbench::{COMPARISON, Workbench, theme};
 use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2};
 
 /// State of the viewport.
@@ -41,9 +41,6 @@ impl Default for View {
         }
     }
 }
-
-/// Colour around the picture.
-const GROUND: Color32 = Color32::from_gray(38);
 
 const WHOLE: Rect = Rect {
     min: Pos2::ZERO,
@@ -94,9 +91,6 @@ impl Workbench {
             }
             _ => {}
         }
-        if let Some(text) = self.comparison_text() {
-            ui.label(text);
-        }
         let about = "The pictures as they are compared here, into captures/";
         if ui
             .small_button("save picture")
@@ -112,7 +106,8 @@ impl Workbench {
         let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::click_and_drag());
         let area = response.rect;
         // Another ground than a picture's black: its edge is seen.
-        painter.rect_filled(area, 0.0, GROUND);
+        let roles = theme::roles(ui);
+        painter.rect_filled(area, 0.0, roles.ground);
         let scale = ui.ctx().pixels_per_point();
         self.layout.area = [
             (area.width() * scale) as u32,
@@ -124,7 +119,7 @@ impl Workbench {
                 Align2::CENTER_CENTER,
                 self.waiting_text(),
                 FontId::proportional(16.0),
-                Color32::GRAY,
+                roles.text,
             );
             return;
         };
@@ -139,12 +134,8 @@ impl Workbench {
         };
         let [shown, b] = self.draw_pictures(&canvas, both);
         if self.stale() {
-            let stroke = Stroke::new(2.0, Color32::from_rgb(220, 80, 60));
+            let stroke = Stroke::new(2.0, roles.error);
             painter.rect_stroke(shown, 0.0, stroke, egui::StrokeKind::Inside);
-        }
-        if let Some(what) = self.pending(ui.ctx()) {
-            let foot = area.intersect(shown).center_bottom() - Vec2::new(0.0, 6.0);
-            badge(&painter, foot, Align2::CENTER_BOTTOM, &what);
         }
         let b = both.then_some(b.intersect(area));
         self.timers(&painter, shown.intersect(area), b);
@@ -262,7 +253,6 @@ impl Workbench {
                 .filter(|p| shown.contains(*p))
         {
             self.point_at(Some(pixel_at(shown, size, p)));
-            self.show_tables();
         }
         if let Some(camera) = &mut self.desired.camera {
             motion::steer(
@@ -309,8 +299,8 @@ impl Canvas<'_> {
 
 fn badge(painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str) {
     let galley =
-        painter.layout_no_wrap(text.to_string(), FontId::proportional(12.0), Color32::WHITE);
+        painter.layout_no_wrap(text.to_string(), FontId::proportional(13.0), Color32::WHITE);
     let rect = anchor.anchor_size(at, galley.size() + Vec2::new(8.0, 2.0));
-    painter.rect_filled(rect, 3.0, Color32::from_black_alpha(160));
+    painter.rect_filled(rect, 3.0, Color32::from_black_alpha(190));
     painter.galley(rect.min + Vec2::new(4.0, 1.0), galley, Color32::WHITE);
 }

@@ -102,10 +102,10 @@ fn linear(value: u8) -> f32 {
 
 /// A line of text on dark ground at the lower left of `area`.
 pub fn foot(painter: &egui::Painter, area: Rect, text: String) {
-    let galley = painter.layout_no_wrap(text, FontId::monospace(11.0), Color32::WHITE);
+    let galley = painter.layout_no_wrap(text, FontId::monospace(13.0), Color32::WHITE);
     let rect =
         Align2::LEFT_BOTTOM.anchor_size(area.left_bottom(), galley.size() + Vec2::splat(6.0));
-    painter.rect_filled(rect, 2.0, Color32::from_black_alpha(170));
+    painter.rect_filled(rect, 2.0, Color32::from_black_alpha(190));
     painter.galley(rect.min + Vec2::splat(3.0), galley, Color32::WHITE);
 }
 

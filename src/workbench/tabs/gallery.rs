@@ -8,7 +8,6 @@ use crate::workbench::background::Background;
 use crate::workbench::desired::save;
 use crate::workbench::engine::Order;
 use crate::workbench::engine::report::Report;
-use crate::workbench::messages::RED;
 use crate::workbench::panel::control::{named, small_button};
 use crate::workbench::{Workbench, short};
 use egui::{ColorImage, TextureHandle, TextureId, Ui, Vec2, WidgetType};
@@ -37,6 +36,7 @@ pub struct Gallery {
 
 impl Tab for Gallery {
     const TITLE: &'static str = "Save";
+    const ICON: &'static str = egui_phosphor::regular::FLOPPY_DISK;
 
     fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
         workbench.gallery_tab(ui);
@@ -118,6 +118,9 @@ impl Workbench {
                 // The name as it was corrected.
                 self.tabs.gallery.name.clone_from(&self.experiment.name);
                 self.tabs.gallery.taken = None;
+                self.opened_file(&path);
+                self.session.file.clone_from(&path);
+                self.saved_state();
                 self.experiment.written = Some(path);
             }
             Err(e) => {
@@ -307,7 +310,12 @@ impl Workbench {
         ui.label(name);
         let m = match &summary.manifest {
             Ok(manifest) => manifest,
-            Err(why) => return drop(ui.colored_label(RED, "damaged").on_hover_text(why)),
+            Err(why) => {
+                return drop(
+                    ui.colored_label(ui.visuals().error_fg_color, "damaged")
+                        .on_hover_text(why),
+                );
+            }
         };
         let [w, h] = m.size;
         ui.weak(format!("{} {w}x{h}", short(&m.scene.name)))
@@ -368,7 +376,7 @@ impl Workbench {
 fn said(ui: &mut Ui, result: Option<&(bool, String)>) {
     match result {
         Some((true, text)) => drop(ui.weak(text)),
-        Some((false, text)) => drop(ui.colored_label(RED, text)),
+        Some((false, text)) => drop(ui.colored_label(ui.visuals().error_fg_color, text)),
         None => {}
     }
 }

@@ -1,4 +1,4 @@
-//! The tabs of the right panel: a file or folder each, with its state and its [`Tab`].
+//! The tabs: a file or folder each, with its state and its [`Tab`].
 
 pub(crate) mod bookmarks;
 pub(crate) mod chart;
@@ -15,17 +15,14 @@ use super::Workbench;
 use super::engine::report::Report;
 use egui::{TextureId, Ui};
 
-/// A tab of the right panel. The type that implements it is the tab's state, a field of [`Tabs`].
+/// A tab. The type that implements it is the tab's state, a field of [`Tabs`].
 pub(crate) trait Tab {
     const TITLE: &'static str;
+    /// An icon of the font of icons.
+    const ICON: &'static str;
 
     /// Shows the tab. `textures` are the hosts' pictures.
     fn show(workbench: &mut Workbench, ui: &mut Ui, textures: &[TextureId]);
-
-    /// Shows the middle of the window while the tab is open.
-    fn middle(workbench: &mut Workbench, ui: &mut Ui, textures: &[TextureId]) {
-        workbench.picture(ui, textures);
-    }
 
     /// Takes in a report of the engine, before the workbench does.
     fn report(_workbench: &mut Workbench, _report: &Report) {}
@@ -46,8 +43,8 @@ pub(crate) trait Tab {
 #[derive(Clone, Copy)]
 pub(crate) struct Entry {
     pub(crate) title: &'static str,
+    pub(crate) icon: &'static str,
     pub(crate) show: fn(&mut Workbench, &mut Ui, &[TextureId]),
-    pub(crate) middle: fn(&mut Workbench, &mut Ui, &[TextureId]),
     pub(crate) report: fn(&mut Workbench, &Report),
     pub(crate) poll: fn(&mut Workbench),
     pub(crate) end_frame: fn(&mut Workbench, &Ui),
@@ -58,8 +55,8 @@ impl Entry {
     const fn of<T: Tab>() -> Entry {
         Entry {
             title: T::TITLE,
+            icon: T::ICON,
             show: T::show,
-            middle: T::middle,
             report: T::report,
             poll: T::poll,
             end_frame: T::end_frame,
@@ -80,10 +77,9 @@ pub(crate) const TABS: [Entry; 8] = [
     Entry::of::<gallery::Gallery>(),
 ];
 
-/// The open tab, and the state of each.
+/// The state of each tab.
 #[derive(Default)]
 pub(crate) struct Tabs {
-    pub(crate) open: Entry,
     pub(crate) surroundings: surroundings::Surroundings,
     pub(crate) times: times::Times,
     pub(crate) chart: chart::Chart,
@@ -92,22 +88,4 @@ pub(crate) struct Tabs {
     pub(crate) tables: tables::Tables,
     pub(crate) paths: paths::Paths,
     pub(crate) gallery: gallery::Gallery,
-}
-
-impl Default for Entry {
-    fn default() -> Entry {
-        TABS[0]
-    }
-}
-
-impl Tabs {
-    /// Opens a tab.
-    pub(crate) fn open<T: Tab>(&mut self) {
-        self.open = Entry::of::<T>();
-    }
-
-    /// Whether a tab is open.
-    pub(crate) fn shows<T: Tab>(&self) -> bool {
-        self.open.title == T::TITLE
-    }
 }

@@ -36,6 +36,7 @@ impl Default for Paths {
 
 impl Tab for Paths {
     const TITLE: &'static str = "Motion";
+    const ICON: &'static str = egui_phosphor::regular::FILM_STRIP;
 
     fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
         workbench.paths_tab(ui);

@@ -5,7 +5,6 @@ use crate::lab::LabError;
 use crate::workbench::Workbench;
 use crate::workbench::background::{Background, Wake};
 use crate::workbench::desired::save;
-use crate::workbench::messages::{AMBER, RED};
 use crate::workbench::panel::control::{named, spin};
 use egui::{DragValue, ProgressBar, Ui};
 use std::io::Read;
@@ -222,8 +221,10 @@ impl Sequence {
         } else if let Some((ok, text)) = &self.said {
             match ok {
                 true => ui.weak(text),
-                false if text.starts_with("cancelled") => ui.colored_label(AMBER, text),
-                false => ui.colored_label(RED, text),
+                false if text.starts_with("cancelled") => {
+                    ui.colored_label(ui.visuals().warn_fg_color, text)
+                }
+                false => ui.colored_label(ui.visuals().error_fg_color, text),
             };
         }
     }

@@ -7,7 +7,6 @@ use crate::scene::Light;
 use crate::scene::light::Quantity;
 use crate::workbench::Workbench;
 use crate::workbench::desired::request::LightState;
-use crate::workbench::messages::AMBER;
 use crate::workbench::panel::control::spin;
 use crate::workbench::picture::motion;
 use egui::{DragValue, RichText, TextureId, Ui};
@@ -37,6 +36,7 @@ impl Default for Surroundings {
 
 impl Tab for Surroundings {
     const TITLE: &'static str = "Scene";
+    const ICON: &'static str = egui_phosphor::regular::SUN;
 
     fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
         workbench.surroundings(ui);
@@ -68,8 +68,8 @@ impl Workbench {
             .show(ui, |ui| {
                 let warnings = self.scene_warnings();
                 if !warnings.is_empty() {
-                    let title =
-                        RichText::new(format!("Warnings ({})", warnings.len())).color(AMBER);
+                    let title = RichText::new(format!("Warnings ({})", warnings.len()))
+                        .color(ui.visuals().warn_fg_color);
                     egui::CollapsingHeader::new(title)
                         .id_salt("warnings")
                         .default_open(true)

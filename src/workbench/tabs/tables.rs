@@ -39,6 +39,7 @@ struct Rows {
 
 impl Tab for Tables {
     const TITLE: &'static str = "Tables";
+    const ICON: &'static str = egui_phosphor::regular::TABLE;
 
     fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
         workbench.tables_tab(ui);
@@ -204,7 +205,8 @@ impl Workbench {
                     }
                 }
             });
-        self.desired.read_back = Some(ReadBack::Table(self.tabs.tables.chosen));
+        let table_number = self.tabs.tables.chosen;
+        self.desired.read_back.push(ReadBack::Table(table_number));
         ui.weak(&table.help);
         self.tabs.tables.refresh();
         self.table_bar(ui, &table.title);

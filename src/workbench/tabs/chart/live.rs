@@ -214,7 +214,7 @@ impl Workbench {
         if self.tabs.chart.live.since.0 != self.sent.number {
             self.tabs.chart.live.since = (self.sent.number, Instant::now());
         }
-        if !self.tabs.shows::<super::Chart>() || !self.error_pending() {
+        if !self.dock.shows_tab::<super::Chart>() || !self.error_pending() {
             return;
         }
         let stood = self.tabs.chart.live.since.1.elapsed();

@@ -17,7 +17,6 @@ use crate::lab::parts_of;
 use crate::metrics::Metric;
 use crate::workbench::Workbench;
 use crate::workbench::engine::report::Report;
-use crate::workbench::messages::RED;
 use crate::workbench::panel::control::named;
 use choice::{Choice, Chosen};
 use egui::{TextureId, Ui};
@@ -51,6 +50,7 @@ pub struct Chart {
 
 impl Tab for Chart {
     const TITLE: &'static str = "Chart";
+    const ICON: &'static str = egui_phosphor::regular::CHART_SCATTER;
 
     fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
         workbench.chart_tab(ui);
@@ -80,7 +80,7 @@ impl Tab for Chart {
     fn awaits(workbench: &Workbench) -> bool {
         let chart = &workbench.tabs.chart;
         let reading = chart.folder.as_ref().is_some_and(|f| f.data.is_none());
-        workbench.tabs.shows::<Chart>()
+        workbench.dock.shows_tab::<Chart>()
             && (reading || chart.live.awaits() || workbench.error_pending())
     }
 }
@@ -185,7 +185,7 @@ impl Workbench {
                 "There is no sweep in captures/sweeps yet: `conelab sweep configs/sweeps/cones.ron` makes one.",
             )),
             Some(None) => drop(ui.weak("reading")),
-            Some(Some(Err(why))) => drop(ui.colored_label(RED, why)),
+            Some(Some(Err(why))) => drop(ui.colored_label(ui.visuals().error_fg_color, why)),
             Some(Some(Ok(_))) => {}
         }
     }

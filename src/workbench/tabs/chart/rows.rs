@@ -65,7 +65,7 @@ impl Workbench {
         let (ms, value) = (live.ms, error.error);
         let text = format!("{name}: {ms:.3} ms, {title} {value:.4e}{noisy}{old}");
         ui.colored_label(LIVE[side], text).on_hover_text(format!(
-            "Median of {} frames since the last change; `keep rendering` measures on. Reference: \
+            "Median of {} frames since the last change; `continuous` measures on. Reference: \
              {bounces}, {} samples a pixel; relMSE of its halves {:.2e}.",
             state.times.len(),
             error.samples,

@@ -13,11 +13,12 @@ use crate::lab::Texels;
 use crate::vulkan::format::Channels;
 use crate::workbench::background::Wake;
 use crate::workbench::desired::request::InspectTarget;
+use crate::workbench::dock::Pane;
 use crate::workbench::engine::report::{GraphInfo, Report};
 use crate::workbench::panel::control::{named, spin};
 use crate::workbench::read_back::{Content, ReadBack};
 use crate::workbench::{INSPECTOR, Workbench};
-use egui::{Color32, DragValue, Slider, TextureId, Ui, Vec2};
+use egui::{DragValue, Slider, TextureId, Ui, Vec2};
 use image::{Channel, Tone};
 use std::sync::Arc;
 use work::{Done, Source, Work};
@@ -25,8 +26,6 @@ use work::{Done, Source, Work};
 /// State of this tab.
 pub struct Inspector {
     target: InspectTarget,
-    /// Whether the picture takes the render's place.
-    in_viewport: bool,
     tone: Tone,
     /// Whether the next texels decide the range.
     fit: bool,
@@ -47,7 +46,6 @@ impl Default for Inspector {
                 axis: 2,
                 slice: 0,
             },
-            in_viewport: true,
             tone: Tone::default(),
             fit: true,
             work: Work::default(),
@@ -60,16 +58,10 @@ impl Default for Inspector {
 
 impl Tab for Inspector {
     const TITLE: &'static str = "Inspect";
+    const ICON: &'static str = egui_phosphor::regular::MAGNIFYING_GLASS;
 
     fn show(workbench: &mut Workbench, ui: &mut Ui, textures: &[TextureId]) {
         workbench.inspector_tab(ui, textures);
-    }
-
-    fn middle(workbench: &mut Workbench, ui: &mut Ui, textures: &[TextureId]) {
-        match workbench.tabs.inspector.fills_viewport() {
-            true => workbench.inspected(ui, textures),
-            false => workbench.picture(ui, textures),
-        }
     }
 
     fn report(workbench: &mut Workbench, report: &Report) {
@@ -136,11 +128,6 @@ impl Inspector {
         Some(pixels)
     }
 
-    /// Whether the viewport shows the inspected texture.
-    fn fills_viewport(&self) -> bool {
-        self.in_viewport && self.shown.is_some() && self.before.is_empty()
-    }
-
     /// Shows the texels there are otherwise, when the tone was changed.
     fn show_again(&mut self, before: Tone, fit: bool, wake: &Wake) {
         if self.tone == before && !fit {
@@ -175,7 +162,16 @@ impl Workbench {
     /// Shows a texture in the inspector.
     pub(crate) fn inspect(&mut self, side: usize, texture: String) {
         self.tabs.inspector.open(side, texture);
-        self.tabs.open::<Inspector>();
+        self.dock.open_tab::<Inspector>();
+        self.dock.open(Pane::Texture);
+    }
+
+    /// Asks for the texels of the chosen texture.
+    pub(super) fn read_texture(&mut self) {
+        let asked = ReadBack::Texture(self.tabs.inspector.target.clone());
+        if !self.desired.read_back.contains(&asked) {
+            self.desired.read_back.push(asked);
+        }
     }
 
     /// Whether a texture is a volume.
@@ -206,14 +202,14 @@ impl Workbench {
             ui.weak("The graph has no textures");
             return;
         };
-        self.desired.read_back = Some(ReadBack::Texture(self.tabs.inspector.target.clone()));
+        self.read_texture();
         ui.separator();
         egui::ScrollArea::vertical()
             .auto_shrink(false)
             .show(ui, |ui| {
                 self.tones(ui, &plan);
                 self.numbers(ui);
-                if !self.tabs.inspector.in_viewport && self.tabs.inspector.shown.is_some() {
+                if !self.dock.shows(&Pane::Texture) && self.tabs.inspector.shown.is_some() {
                     let size = Vec2::new(
                         ui.available_width(),
                         ui.available_width().max(ui.available_height()),
@@ -233,6 +229,7 @@ impl Workbench {
             inspector.open(inspector.target.side, name);
         }
         self.texture_menu(ui, info, &names);
+        let (dock_shows, mut large) = (self.dock.shows(&Pane::Texture), false);
         let inspector = &mut self.tabs.inspector;
         let target = &mut inspector.target;
         let index = info.graph.texture(&target.texture)?;
@@ -245,14 +242,16 @@ impl Workbench {
         let shown = inspector.shown.as_ref();
         let waits = shown.is_none_or(|s| s.decoded.target != *target);
         ui.horizontal(|ui| {
-            ui.checkbox(&mut inspector.in_viewport, "in the viewport")
-                .on_hover_text("Where the render is; else below");
             if waits && plan.usage.is_empty() {
-                ui.weak("not made yet: no pass that runs uses it");
+                ui.weak("Not allocated: no active pass uses it");
             } else if waits {
                 ui.weak("…");
             }
+            large = !dock_shows && ui.button("Show large").clicked();
         });
+        if large {
+            self.dock.open(Pane::Texture);
+        }
         Some(plan)
     }
 
@@ -335,7 +334,7 @@ impl Workbench {
         if nan + infinite > 0 {
             let text =
                 format!("{nan} values are not a number (magenta), {infinite} are infinite (cyan)");
-            ui.colored_label(Color32::from_rgb(240, 90, 80), text);
+            ui.colored_label(ui.visuals().error_fg_color, text);
         }
         histogram::show(ui, done);
         egui::Grid::new("values")
@@ -358,7 +357,7 @@ impl Workbench {
                     for n in [v.nan, v.infinite] {
                         let text = egui::RichText::new(n.to_string()).monospace();
                         ui.label(if n > 0 {
-                            text.color(Color32::from_rgb(240, 90, 80))
+                            text.color(ui.visuals().error_fg_color)
                         } else {
                             text
                         });
@@ -389,7 +388,7 @@ fn choose_part(ui: &mut Ui, plan: &TexturePlan, target: &mut InspectTarget) {
     }
     if plan.volume {
         ui.horizontal(|ui| {
-            ui.label("cut across");
+            ui.label("Slice axis");
             for (axis, name) in ["x", "y", "z"].iter().enumerate() {
                 ui.selectable_value(&mut target.axis, axis, *name);
             }

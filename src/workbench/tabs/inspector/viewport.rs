@@ -72,13 +72,8 @@ impl Workbench {
         let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::click_and_drag());
         let area = response.rect;
         let scale = ui.ctx().pixels_per_point();
-        if self.tabs.inspector.in_viewport {
-            self.layout.area = [
-                (area.width() * scale) as u32,
-                (area.height() * scale) as u32,
-            ];
-        }
-        painter.rect_filled(area, 0.0, Color32::from_gray(12));
+        self.read_texture();
+        painter.rect_filled(area, 0.0, ui.visuals().extreme_bg_color);
         let Some(done) = &self.tabs.inspector.shown else {
             return;
         };

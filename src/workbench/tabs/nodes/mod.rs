@@ -5,9 +5,11 @@ mod layout;
 use super::Tab;
 use crate::workbench::Workbench;
 use crate::workbench::desired::edit;
+use crate::workbench::dock::Pane;
 use crate::workbench::engine::report::{GraphInfo, PassUses};
 use crate::workbench::panel::control::named;
 use crate::workbench::panel::folded;
+use crate::workbench::theme;
 use egui::{
     Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, TextureId, Ui, Vec2,
     epaint::CubicBezierShape,
@@ -25,8 +27,6 @@ pub struct Nodes {
     go: bool,
     /// Search text for names of passes and of their outputs.
     search: String,
-    /// Whether the picture is in the middle, and not the graph.
-    beside: bool,
     /// The part of the layout that is seen; all when absent.
     seen: Option<Seen>,
     /// Where it is drawn, points.
@@ -34,9 +34,11 @@ pub struct Nodes {
     made: Option<(Arc<GraphInfo>, Vec2, Layout)>,
 }
 
-/// The least zoom at which a row's text is legible, about 7 points. Below it, a click anywhere on a
-/// pass opens the pass.
-const READABLE: f32 = 0.6;
+/// Smallest text, points.
+const LEAST: f32 = 12.0;
+
+/// The least zoom at which rows have text. Below it, a click anywhere on a pass opens the pass.
+const READABLE: f32 = LEAST / 13.0;
 
 /// A part of the layout.
 #[derive(Clone, Copy)]
@@ -69,7 +71,7 @@ fn steered(
     let mut now = seen.unwrap_or(whole);
     if let Some(center) = go {
         // Large enough to be read.
-        now.zoom = now.zoom.max(0.8);
+        now.zoom = now.zoom.max(1.0);
         now.corner = center - 0.5 * area.size() / now.zoom;
         seen = Some(now);
     }
@@ -98,16 +100,10 @@ enum Asked {
 
 impl Tab for Nodes {
     const TITLE: &'static str = "Graph";
+    const ICON: &'static str = egui_phosphor::regular::TREE_STRUCTURE;
 
     fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
         workbench.graph_tab(ui);
-    }
-
-    fn middle(workbench: &mut Workbench, ui: &mut Ui, textures: &[TextureId]) {
-        match workbench.tabs.nodes.beside {
-            true => workbench.picture(ui, textures),
-            false => workbench.graph_view(ui),
-        }
     }
 }
 
@@ -130,8 +126,8 @@ impl Nodes {
 }
 
 impl Workbench {
-    /// The graph in the viewport.
-    fn graph_view(&mut self, ui: &mut Ui) {
+    /// The pane of nodes.
+    pub(crate) fn graph_view(&mut self, ui: &mut Ui) {
         let side = self
             .tabs
             .nodes
@@ -149,7 +145,8 @@ impl Workbench {
         let chosen = nodes.chosen.clone();
         let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
         let area = response.rect;
-        ui.painter().rect_filled(area, 0.0, Color32::from_gray(12));
+        ui.painter()
+            .rect_filled(area, 0.0, ui.visuals().extreme_bg_color);
         nodes.area = area.size();
         let (seen, go) = (nodes.seen, std::mem::take(&mut nodes.go));
         let layout = nodes.layout(&info);
@@ -236,20 +233,20 @@ impl Workbench {
                 nodes.chosen = None;
             }
             if ui
-                .small_button("all")
-                .on_hover_text("The whole graph; or a double click")
+                .small_button("Fit graph")
+                .on_hover_text("Show the whole graph. A double click does the same")
                 .clicked()
             {
                 nodes.seen = None;
             }
-            let about = "The picture in the middle, not the graph";
-            ui.toggle_value(&mut nodes.beside, egui::RichText::new("picture").small())
-                .on_hover_text(about);
         });
-        let about = "Columns are stages, boxes are passes and what they write, warmer the longer they take. Drag and wheel \
-             move; a click on a pass or a texture opens it.";
-        if !nodes.beside {
-            ui.weak(about);
+        if self.dock.shows(&Pane::Nodes) {
+            ui.weak(
+                "Columns are stages; boxes are passes with their outputs; warmer = slower. \
+                 Click a pass or a texture to open it. Drag to pan, use the wheel to zoom.",
+            );
+        } else if ui.button("Show the nodes").clicked() {
+            self.dock.open(Pane::Nodes);
         }
     }
 
@@ -403,7 +400,7 @@ impl Workbench {
         let mut without = with.clone();
         without.off.push(name.to_string());
         self.compare_sides([Some(with), Some(without)]);
-        self.tabs.nodes.beside = true;
+        self.dock.open(Pane::Picture);
     }
 
     /// Turns off every pass that a pass does not need, except those of the picture, and shows its
@@ -502,7 +499,17 @@ impl Canvas<'_> {
     }
 
     fn text(&self, clip: Rect, at: Pos2, anchor: Align2, text: &str, points: f32, color: Color32) {
-        let font = FontId::proportional(points * self.seen.zoom);
+        let points = points * self.seen.zoom;
+        if points >= LEAST {
+            let font = FontId::proportional(points);
+            self.painter(clip)
+                .text(self.at(at), anchor, text, font, color);
+        }
+    }
+
+    /// A text that stays legible however small the graph is drawn.
+    fn name(&self, clip: Rect, at: Pos2, anchor: Align2, text: &str, points: f32, color: Color32) {
+        let font = FontId::proportional((points * self.seen.zoom).max(LEAST));
         self.painter(clip)
             .text(self.at(at), anchor, text, font, color);
     }
@@ -540,13 +547,14 @@ impl Canvas<'_> {
             let total = column.passes.iter().filter_map(|p| ms(*p)).sum();
             self.column(column, total);
         }
+        let roles = theme::roles(self.ui);
         let touches = |i: usize| chosen.is_some_and(|c| layout.nodes[i].name == c);
         for edge in &layout.edges {
             let bright = touches(edge.from.0) || touches(edge.to);
             let color = match (bright, edge.of_last_frame) {
-                (true, _) => Color32::from_rgb(240, 190, 90),
-                (false, true) => Color32::from_rgba_unmultiplied(150, 110, 190, 80),
-                (false, false) => Color32::from_rgba_unmultiplied(130, 150, 180, 64),
+                (true, _) => roles.accent,
+                (false, true) => Color32::from_rgba_unmultiplied(150, 110, 190, 110),
+                (false, false) => roles.secondary.gamma_multiply(0.3),
             };
             let stroke = Stroke::new(if bright { 1.8 } else { 1.0 }, color);
             self.painter(self.area)
@@ -570,8 +578,8 @@ impl Canvas<'_> {
         let (strong, weak) = (visuals.text_color(), visuals.weak_text_color());
         let top = column.rect.left_top();
         let (at, below) = (Align2::LEFT_TOP, top + Vec2::new(0.0, 17.0));
-        self.text(self.area, top, at, &column.stage, 14.0, strong);
-        self.text(self.area, below, at, &format!("{total:.3} ms"), 11.5, weak);
+        self.name(self.area, top, at, &column.stage, 14.0, strong);
+        self.text(self.area, below, at, &format!("{total:.3} ms"), 13.0, weak);
         let line = top + Vec2::new(0.0, TITLE);
         let line = self.place(Rect::from_min_max(line, column.rect.right_top()));
         let stroke = Stroke::new(1.0, weak.gamma_multiply(0.4));
@@ -593,15 +601,16 @@ impl Canvas<'_> {
         };
         let visuals = self.ui.visuals();
         let (strong, weak) = (visuals.text_color(), visuals.weak_text_color());
-        let warm = Color32::from_gray(38).lerp_to_gamma(Color32::from_rgb(140, 66, 40), heat);
+        let roles = theme::roles(self.ui);
+        let warm = roles.button.lerp_to_gamma(roles.hot, heat);
         let (fill, color, said) = match node.runs {
             true => (warm, strong, format!("{time:.3}")),
-            false => (Color32::from_gray(24), weak, "off".into()),
+            false => (roles.panel, weak, "off".into()),
         };
         let edge = match (is_chosen, response.hovered()) {
-            (true, _) => Stroke::new(2.0, Color32::from_rgb(240, 190, 90)),
+            (true, _) => Stroke::new(2.0, roles.accent),
             (_, true) => Stroke::new(1.5, strong),
-            _ => Stroke::new(1.0, Color32::from_gray(80)),
+            _ => Stroke::new(1.0, roles.line),
         };
         let rect = self.place(node.rect);
         let (round, inside) = (4.0 * self.seen.zoom, egui::StrokeKind::Inside);
@@ -609,10 +618,15 @@ impl Canvas<'_> {
             .rect(rect, round, fill, edge, inside);
         let first = node.rect.left_top() + Vec2::new(6.0, ROW * 0.75);
         let right = Pos2::new(node.rect.right() - 6.0, first.y);
-        // Names give way to times.
-        let names = self.place(node.rect.with_max_x(right.x - 34.0));
-        self.text(names, first, Align2::LEFT_CENTER, &node.name, 11.5, color);
-        self.text(rect, right, Align2::RIGHT_CENTER, &said, 10.5, color);
+        // Names give way to times, where these are shown.
+        let times = if self.seen.zoom >= READABLE {
+            42.0
+        } else {
+            0.0
+        };
+        let names = self.place(node.rect.with_max_x(right.x - times));
+        self.name(names, first, Align2::LEFT_CENTER, &node.name, 13.0, color);
+        self.text(rect, right, Align2::RIGHT_CENTER, &said, 13.0, color);
         for number in 0..node.writes.len() {
             self.output(info, node, number);
         }
@@ -630,9 +644,10 @@ impl Canvas<'_> {
         let hit = (self.seen.zoom >= READABLE)
             .then(|| self.button(row, (node.pass, number), texture, name))
             .flatten();
+        // Every row can be on a warm ground, where only the text's colour has enough contrast.
         let color = match texture && hit.as_ref().is_some_and(egui::Response::hovered) {
-            true => self.ui.visuals().text_color(),
-            false => Color32::from_gray(150),
+            true => self.ui.visuals().hyperlink_color,
+            false => self.ui.visuals().text_color(),
         };
         let at = row.left_center() + Vec2::new(12.0, 0.0);
         self.text(
@@ -640,7 +655,7 @@ impl Canvas<'_> {
             at,
             Align2::LEFT_CENTER,
             resource,
-            10.5,
+            13.0,
             color,
         );
         if hit.is_some_and(|h| h.clicked()) {

@@ -56,6 +56,7 @@ pub struct Means {
 
 impl Tab for Times {
     const TITLE: &'static str = "Time";
+    const ICON: &'static str = egui_phosphor::regular::GAUGE;
 
     fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
         workbench.times_tab(ui);
