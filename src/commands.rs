@@ -355,6 +355,8 @@ fn devices() -> Result<(), LabError> {
                     ("64-bit atomics", f.int64_atomics),
                     ("BC textures", f.bc),
                     ("timestamps", info.timestamp_ns > 0.0),
+                    ("calibrated timestamps", info.calibrates()),
+                    ("pipeline statistics", f.pipeline_statistics),
                 ];
                 for (name, has) in list {
                     say!("   {} {name}", if has { "yes" } else { "no " });

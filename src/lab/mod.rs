@@ -34,7 +34,7 @@ use crate::graph::run::{Parts, Program, Update};
 use crate::graph::{Evaluated, Graph, signed};
 use crate::metrics::MetricError;
 use crate::scene::{Scene, SceneError};
-use crate::vulkan::{DeviceInfo, Features, Gpu, GpuOptions, VulkanError};
+use crate::vulkan::{ClockExtension, DeviceInfo, Features, Gpu, GpuOptions, VulkanError};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -372,6 +372,8 @@ fn split(scene: &Scene, edge: f32, limit: u32) -> Result<Scene, LabError> {
 /// A device with every feature, for checks that need none of their own.
 pub fn any_device() -> DeviceInfo {
     let all = Features {
+        pipeline_statistics: true,
+        clock: ClockExtension::None,
         shares_memory: true,
         portability: false,
         conservative_rasterization: true,

@@ -1,8 +1,9 @@
 //! Instance, device, queue, allocator and pipeline cache.
 
+use super::clock::{Clock, ClockExtension};
 use super::debug::{Messages, Names, messenger_info};
 use super::{DeviceId, Result, VulkanError};
-use ash::{Entry, ext, khr, vk};
+use ash::{Entry, ext, khr, nv, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::ffi::{CStr, CString};
 use std::path::PathBuf;
@@ -80,6 +81,10 @@ pub struct Features {
     pub(crate) full_index: bool,
     /// 64-bit integers in shaders, and atomics on them in buffers.
     pub(crate) int64_atomics: bool,
+    /// `VK_KHR_pipeline_executable_properties`.
+    pub pipeline_statistics: bool,
+    /// The device's clock can be read next to the CPU's.
+    pub(crate) clock: ClockExtension,
     /// Buffers can be shared with another device of the same physical device.
     pub(crate) shares_memory: bool,
     /// Non-conformant implementation with VK_KHR_portability_subset (MoltenVK).
@@ -106,6 +111,8 @@ pub struct DeviceInfo {
     pub heap: u64,
     /// Optional features.
     pub features: Features,
+    /// Most resident warps per multiprocessor (`VK_NV_shader_sm_builtins`).
+    pub(crate) warps: Option<u32>,
     /// Identity of the physical device and driver.
     pub id: DeviceId,
     cache_key: String,
@@ -121,6 +128,11 @@ impl DeviceInfo {
         } else {
             ticks as f64 * self.timestamp_ns * 1e-6
         }
+    }
+
+    /// Whether GPU times have a place on the CPU's time line.
+    pub fn calibrates(&self) -> bool {
+        self.features.clock != ClockExtension::None
     }
 
     /// A fictitious device with these features and generous limits, for checks without a device.
@@ -146,6 +158,7 @@ impl DeviceInfo {
             timestamp_mask: u64::MAX,
             limits,
             heap: u64::MAX,
+            warps: None,
             features,
             id: DeviceId::default(),
             cache_key: String::new(),
@@ -161,6 +174,8 @@ pub struct Gpu {
     pub(super) allocator: Mutex<Option<Allocator>>,
     pub(super) pipeline_cache: vk::PipelineCache,
     pub(super) names: Option<Names>,
+    pub(super) clock: Option<Clock>,
+    pub(super) executables: Option<khr::pipeline_executable_properties::Device>,
     /// Properties of the device.
     pub info: DeviceInfo,
     cache_file: Option<PathBuf>,
@@ -284,7 +299,7 @@ fn allocator(
     })
 }
 
-fn text(c: &[std::ffi::c_char]) -> String {
+pub(super) fn text(c: &[std::ffi::c_char]) -> String {
     let bytes = c.iter().take_while(|&&b| b != 0).map(|b| b.cast_unsigned());
     String::from_utf8_lossy(&bytes.collect::<Vec<u8>>()).into_owned()
 }
@@ -324,6 +339,11 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
         let extensions = instance
             .enumerate_device_extension_properties(physical)
             .unwrap_or_default();
+        let mut builtins = vk::PhysicalDeviceShaderSMBuiltinsPropertiesNV::default();
+        if super::has(&extensions, nv::shader_sm_builtins::NAME) {
+            let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut builtins);
+            instance.get_physical_device_properties2(physical, &mut properties);
+        }
         let memory = instance.get_physical_device_memory_properties(physical);
         let local = |h: &&vk::MemoryHeap| h.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL);
         let heaps = memory.memory_heaps_as_slice().iter().filter(local);
@@ -344,11 +364,13 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                 false => 0.0,
             },
             limits: core.limits,
+            warps: Some(builtins.shader_warps_per_sm).filter(|n| *n > 0),
             heap: heaps.map(|h| h.size).max().unwrap_or(0),
             features: Features {
                 // Anisotropic filtering costs software devices seconds per frame.
                 anisotropy: have.sampler_anisotropy == vk::TRUE
                     && core.device_type != vk::PhysicalDeviceType::CPU,
+                pipeline_statistics: reports_pipelines(instance, physical, &extensions),
                 shares_memory: super::share::is_supported(instance, physical, &extensions),
                 ..features(&have, &have12, &extensions)
             },
@@ -365,6 +387,22 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
             ),
         }
     }
+}
+
+/// Whether a device reports statistics of pipelines.
+fn reports_pipelines(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    extensions: &[vk::ExtensionProperties],
+) -> bool {
+    if !super::has(extensions, khr::pipeline_executable_properties::NAME) {
+        return false;
+    }
+    let mut have = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default();
+    let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut have);
+    // SAFETY: `physical` comes from this instance and has the extension.
+    unsafe { instance.get_physical_device_features2(physical, &mut features) };
+    have.pipeline_executable_info == vk::TRUE
 }
 
 /// The optional features that a device reports.
@@ -389,6 +427,7 @@ fn features(
         full_index: have.full_draw_index_uint32 == vk::TRUE,
         int64_atomics: have.shader_int64 == vk::TRUE
             && have12.shader_buffer_int64_atomics == vk::TRUE,
+        clock: ClockExtension::of(extensions),
         portability: super::has(extensions, khr::portability_subset::NAME),
         ..Features::default()
     }
@@ -535,7 +574,14 @@ impl Gpu {
         let names = debug_utils.then(|| Names {
             device: ext::debug_utils::Device::new(&instance, &device),
         });
+        let clock = Clock::new(&entry, &instance, physical, &device, info.features.clock);
+        let executables = info
+            .features
+            .pipeline_statistics
+            .then(|| khr::pipeline_executable_properties::Device::new(&instance, &device));
         Ok(Arc::new(Gpu {
+            clock,
+            executables,
             device,
             queue: Mutex::new(queue),
             family,
@@ -683,13 +729,23 @@ fn create_device(
             have.portability
                 .then(|| khr::portability_subset::NAME.as_ptr()),
         )
+        .chain(
+            have.pipeline_statistics
+                .then(|| khr::pipeline_executable_properties::NAME.as_ptr()),
+        )
+        .chain(have.clock.name().map(std::ffi::CStr::as_ptr))
         .collect();
-    let info = vk::DeviceCreateInfo::default()
+    let mut executables = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
+        .pipeline_executable_info(true);
+    let mut info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(&extensions)
         .enabled_features(&features)
         .push_next(&mut v13)
         .push_next(&mut v12);
+    if have.pipeline_statistics {
+        info = info.push_next(&mut executables);
+    }
     // SAFETY: this device supports every enabled feature and extension.
     unsafe { instance.create_device(physical, &info, None) }
         .map_err(VulkanError::at("open the device"))

@@ -5,8 +5,10 @@
 
 #![allow(unsafe_code, reason = "Vulkan is called here and nowhere else")]
 
+mod clock;
 mod command;
 mod debug;
+mod executable;
 pub(crate) mod format;
 mod gpu;
 mod memory;
@@ -17,7 +19,10 @@ mod share;
 mod surface;
 
 pub(crate) use ash::vk;
+pub(crate) use clock::{ClockExtension, ClockReading};
 pub(crate) use command::{Commands, FrameSlot, Recording};
+pub(crate) use executable::statistics;
+pub use executable::{Executable, Statistic};
 pub(crate) use format::Format;
 pub use gpu::{DeviceInfo, Faults, Features, GpuOptions};
 pub(crate) use gpu::{Gpu, list_devices};
@@ -72,6 +77,14 @@ pub enum VulkanError {
         asked: String,
         /// The limit of the device.
         limit: String,
+        /// Name of the device.
+        device: String,
+    },
+    /// The device or driver lacks something.
+    #[error("{device} does not offer {what}")]
+    Unsupported {
+        /// What is missing.
+        what: &'static str,
         /// Name of the device.
         device: String,
     },

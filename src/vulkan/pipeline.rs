@@ -175,6 +175,9 @@ pub struct PipelineDesc {
     pub draw: Option<(DrawState, Attachments)>,
 }
 
+/// Flags of a pipeline, and the cache for it.
+type How = (vk::PipelineCreateFlags, vk::PipelineCache);
+
 /// A pipeline with its layout.
 pub struct Pipeline {
     gpu: Arc<Gpu>,
@@ -220,6 +223,17 @@ impl Pipeline {
 
     /// Makes a pipeline.
     pub fn new(gpu: &Arc<Gpu>, desc: &PipelineDesc) -> Result<Pipeline> {
+        let how = (vk::PipelineCreateFlags::empty(), gpu.pipeline_cache);
+        Pipeline::create(gpu, desc, how)
+    }
+
+    /// Makes a pipeline with statistics, past the pipeline cache.
+    pub(super) fn capturing(gpu: &Arc<Gpu>, desc: &PipelineDesc) -> Result<Pipeline> {
+        let flags = vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR;
+        Pipeline::create(gpu, desc, (flags, vk::PipelineCache::null()))
+    }
+
+    fn create(gpu: &Arc<Gpu>, desc: &PipelineDesc, how: How) -> Result<Pipeline> {
         let flags = desc.stages.iter().map(|s| s.stage.flag());
         let push_stages = flags.fold(vk::ShaderStageFlags::empty(), |a, flag| a | flag);
         let at = |what: &str| VulkanError::at(format!("{what} of pass '{}'", desc.name));
@@ -254,8 +268,8 @@ impl Pipeline {
         });
         let (layout, stages) = (pipeline.layout, stages.collect::<Vec<_>>());
         let handle = match &desc.draw {
-            None => compute(gpu, layout, &stages),
-            Some((state, attachments)) => graphics(gpu, layout, &stages, state, attachments),
+            None => compute(gpu, layout, &stages, how),
+            Some((state, attachments)) => graphics(gpu, layout, &stages, (state, attachments), how),
         };
         pipeline.handle = handle.map_err(at("create the pipeline"))?;
         gpu.name(pipeline.handle, &desc.name);
@@ -320,18 +334,17 @@ fn compute(
     gpu: &Gpu,
     layout: vk::PipelineLayout,
     stages: &[vk::PipelineShaderStageCreateInfo<'_>],
+    (flags, cache): How,
 ) -> std::result::Result<vk::Pipeline, vk::Result> {
     let Some(stage) = stages.first() else {
         return Err(vk::Result::ERROR_UNKNOWN);
     };
     let info = [vk::ComputePipelineCreateInfo::default()
+        .flags(flags)
         .layout(layout)
         .stage(*stage)];
     // SAFETY: layout and module are alive.
-    let made = unsafe {
-        gpu.device
-            .create_compute_pipelines(gpu.pipeline_cache, &info, None)
-    };
+    let made = unsafe { gpu.device.create_compute_pipelines(cache, &info, None) };
     made.map(|p| p[0]).map_err(|(_, code)| code)
 }
 
@@ -351,8 +364,8 @@ fn graphics(
     gpu: &Gpu,
     layout: vk::PipelineLayout,
     stages: &[vk::PipelineShaderStageCreateInfo<'_>],
-    state: &DrawState,
-    attachments: &Attachments,
+    (state, attachments): (&DrawState, &Attachments),
+    (flags, cache): How,
 ) -> std::result::Result<vk::Pipeline, vk::Result> {
     let vertex = vk::PipelineVertexInputStateCreateInfo::default();
     let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(state.topology);
@@ -386,6 +399,7 @@ fn graphics(
         .color_attachment_formats(&attachments.color)
         .depth_attachment_format(attachments.depth.unwrap_or(vk::Format::UNDEFINED));
     let info = [vk::GraphicsPipelineCreateInfo::default()
+        .flags(flags)
         .stages(stages)
         .vertex_input_state(&vertex)
         .input_assembly_state(&assembly)
@@ -399,10 +413,7 @@ fn graphics(
         .layout(layout)
         .push_next(&mut rendering)];
     // SAFETY: layout and modules are alive; all state outlives the call.
-    let made = unsafe {
-        let cache = gpu.pipeline_cache;
-        gpu.device.create_graphics_pipelines(cache, &info, None)
-    };
+    let made = unsafe { gpu.device.create_graphics_pipelines(cache, &info, None) };
     made.map(|p| p[0]).map_err(|(_, code)| code)
 }
 
