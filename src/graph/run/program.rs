@@ -7,6 +7,7 @@ use super::pipelines::{Pipelines, make_pipelines};
 use super::record::Recorder;
 use super::resources::{self, Resources};
 use super::scene::SceneResources;
+use super::timeline::{Calibration, Timeline};
 use super::transfer::{Update, relayout, send};
 use crate::graph::definition::Res;
 use crate::graph::evaluated::Evaluated;
@@ -21,7 +22,7 @@ use std::time::Instant;
 
 /// A graph that is ready to run.
 pub struct Program {
-    gpu: Arc<Gpu>,
+    pub(super) gpu: Arc<Gpu>,
     /// What it runs.
     pub plan: Plan,
     linked: Arc<Vec<Linked>>,
@@ -54,6 +55,7 @@ pub struct Program {
     execution: Execution,
     /// For incremental execution, and for groups that converge.
     versions: Option<Versions>,
+    calibration: Calibration,
 }
 
 /// A frame in flight.
@@ -62,7 +64,8 @@ struct Slot {
     /// write.
     recorded: [Option<(Recorded, Recording)>; 2],
     commands: FrameSlot,
-    cpu_ms: f64,
+    /// When its last frame was recorded and submitted.
+    cpu: [Instant; 3],
     /// Whether each of [`Program::starts`] has a timestamp.
     stamped: Vec<bool>,
     /// Where the shown texture is copied to on the CPU, and whether its last frame did.
@@ -89,7 +92,7 @@ impl Slot {
         Ok(Slot {
             commands: FrameSlot::new(gpu, timestamps)?,
             recorded: [None, None],
-            cpu_ms: 0.0,
+            cpu: [Instant::now(); 3],
             stamped: Vec::new(),
             readback: (None, false),
             handed: None,
@@ -116,6 +119,8 @@ pub struct FrameTimes {
     pub gpu_ms: f64,
     /// Recording and submitting on the CPU, ms.
     pub cpu_ms: f64,
+    /// When all of it happened.
+    pub timeline: Option<Timeline>,
     /// Texels of the texture chosen by [`Program::show`], mip 0 and layer 0, tightly packed.
     pub picture: Option<Vec<u8>>,
     /// The same in a buffer of the device that another device may take ([`Program::hand_over`]).
@@ -186,6 +191,7 @@ impl Program {
             interface: set.graph.interface,
             execution: Execution::Full,
             versions: None,
+            calibration: Calibration::default(),
         };
         program.set_execution(Execution::Full);
         program.initialise(parts)?;
@@ -271,7 +277,8 @@ impl Program {
         let start = Instant::now();
         let frame = self.work(updates, parity == 1);
         let result = readback.and_then(|()| self.submit(&mut slots[slot], frame, updates, parity));
-        slots[slot].cpu_ms = start.elapsed().as_secs_f64() * 1e3;
+        slots[slot].cpu[0] = start;
+        slots[slot].cpu[2] = Instant::now();
         self.slots = slots;
         if result.is_err() {
             // The effect of such a frame is unknown.
@@ -301,7 +308,7 @@ impl Program {
             stamped,
             readback,
             handed,
-            ..
+            cpu,
         } = slot;
         let recorder = self.recorder();
         let recorded = &mut recorded[parity];
@@ -323,6 +330,7 @@ impl Program {
                 recorder.copy_shown(commands, texture, parity, to_host, handed.as_deref())
             }
         });
+        cpu[1] = Instant::now();
         commands.submit_again(&recording, |commands| send(commands, updates), copy)?;
         *recorded = Some((wanted, recording));
         Ok(())
@@ -527,14 +535,21 @@ impl Program {
         let shown = usize::try_from(self.shown_bytes()).unwrap_or(0);
         let Slot {
             commands,
-            cpu_ms,
+            cpu,
             stamped,
             readback,
             handed,
             ..
         } = &mut self.slots[slot];
+        let waiting = Instant::now();
         let Some(ticks) = commands.wait()? else {
             return Ok(None);
+        };
+        let timeline = Timeline {
+            recorded: [cpu[0], cpu[1]],
+            submitted: [cpu[1], cpu[2]],
+            waited: [waiting, Instant::now()],
+            gpu: self.calibration.time(&self.gpu, &ticks),
         };
         let ms = |a: u64, b: u64| self.gpu.info.ms_between(a, b);
         let passes = self
@@ -563,7 +578,8 @@ impl Program {
                 .first()
                 .zip(ticks.last())
                 .map_or(0.0, |(a, b)| ms(*a, *b)),
-            cpu_ms: *cpu_ms,
+            cpu_ms: cpu[2].duration_since(cpu[0]).as_secs_f64() * 1e3,
+            timeline: Some(timeline),
             picture: readback
                 .0
                 .as_ref()
