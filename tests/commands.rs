@@ -605,7 +605,7 @@ fn graph_explains_itself() {
         assert!(text.contains(part), "'{part}' is not in\n{text}");
     }
     assert!(
-        text.contains("voxelize tessellated: tessellates == 1 is false"),
+        text.contains("voxelize tessellated: needs tessellates == 1"),
         "{text}"
     );
     let other = graph(&[
@@ -615,7 +615,7 @@ fn graph_explains_itself() {
         "--barriers",
     ]);
     assert!(
-        !other.contains("voxelize tessellated: tessellates == 1 is false"),
+        !other.contains("voxelize tessellated: needs tessellates == 1"),
         "{other}"
     );
 

@@ -103,7 +103,7 @@ fn run(planner: &mut Planner<'_, '_>, linked: &[Linked]) -> Ran {
         let mut conditions = pass.value.conditions();
         if let Some(when) = conditions.find(|when| !planner.numbers.holds(when)) {
             ran.dropped
-                .push((number, format!("{} is false", when.value.text)));
+                .push((number, format!("needs {}", when.value.text)));
             continue;
         }
         let planned = planner.steps(number, &pass.value, link);
