@@ -4,11 +4,11 @@
 use crate::graph::Graph;
 use crate::graph::param::Params;
 use crate::lab::Texels;
+use crate::metrics::colour::srgb_to_linear;
 use crate::results::picture;
 use crate::vulkan::{Format, Gpu, Painter as GpuPainter, PixelSource, Pixels, Result};
-use egui::ecolor::Hsva;
 use egui::{Align2, Color32, FontId, Painter, Pos2, RawInput, Rect, Vec2};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 /// Rows of the overlay.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -46,8 +46,8 @@ pub struct Timers {
 
 /// Suffix of skipped passes.
 const SKIPPED: &str = " (skipped)";
-const WIDTH: f32 = 226.0;
-const LINE: f32 = 14.0;
+const WIDTH: f32 = 236.0;
+const LINE: f32 = 15.0;
 const MARGIN: f32 = 6.0;
 
 impl Timers {
@@ -132,7 +132,7 @@ pub fn draw(painter: &Painter, picture: Rect, right: bool, timers: &Timers, long
         let size = Vec2::new(inner.width(), LINE);
         Rect::from_min_size(inner.min + Vec2::new(0.0, n * LINE), size)
     };
-    let (font, numbers) = (FontId::proportional(11.5), FontId::monospace(10.5));
+    let (font, numbers) = (FontId::proportional(12.0), FontId::monospace(12.0));
     let left = |painter: &Painter, at: Pos2, text: &str, color: Color32| {
         painter.text(at, Align2::LEFT_CENTER, text, font.clone(), color);
     };
@@ -158,7 +158,7 @@ pub fn draw(painter: &Painter, picture: Rect, right: bool, timers: &Timers, long
         let bar = Rect::from_min_size(at.min + Vec2::new(0.0, 1.0), size);
         let fill = color(name.trim_end_matches(SKIPPED)).gamma_multiply(0.55);
         painter.rect_filled(bar, 1.0, fill);
-        let names = Rect::from_min_max(at.min, Pos2::new(at.right() - 44.0, at.bottom()));
+        let names = Rect::from_min_max(at.min, Pos2::new(at.right() - 50.0, at.bottom()));
         let clipped = painter.with_clip_rect(names.intersect(painter.clip_rect()));
         let start = at.left_center() + Vec2::new(3.0, 0.0);
         left(&clipped, start, name, Color32::from_gray(235));
@@ -211,20 +211,56 @@ pub fn color(name: &str) -> Color32 {
         names.push(name.to_string());
         names.len() - 1
     });
-    numbered(number)
+    PALETTE[number % PALETTE.len()]
 }
 
-/// The colour of the n-th name.
-fn numbered(number: usize) -> Color32 {
-    // Steps of the golden ratio never repeat; neighbours differ in brightness too.
-    let hue = (number as f32 * 0.618_034).fract();
-    Hsva::new(
-        hue,
-        [0.75, 0.45, 0.9, 0.6, 0.35][number % 5],
-        [0.95, 0.75, 0.6, 0.85, 0.55][number % 5],
-        1.0,
-    )
-    .into()
+/// Number of colours before they repeat.
+const COLORS: usize = 64;
+
+/// Colours in an order in which each is as far as possible from all before it.
+static PALETTE: LazyLock<Vec<Color32>> = LazyLock::new(palette);
+
+fn palette() -> Vec<Color32> {
+    let levels = || (0..8u8).map(|i| 32 + i * 30);
+    let all = levels().flat_map(|r| {
+        levels().flat_map(move |g| levels().map(move |b| Color32::from_rgb(r, g, b)))
+    });
+    // Readable on dark and on light grounds, and not grey: grey marks what belongs to no pass.
+    let usable = |lab: &[f32; 3]| (0.5..0.85).contains(&lab[0]) && lab[1].hypot(lab[2]) > 0.06;
+    let mut left: Vec<(Color32, [f32; 3], f32)> = all
+        .map(|c| (c, oklab(c), f32::INFINITY))
+        .filter(|c| usable(&c.1))
+        .collect();
+    let mut chosen = Vec::with_capacity(COLORS);
+    while chosen.len() < COLORS {
+        let Some(next) = (0..left.len()).max_by(|a, b| left[*a].2.total_cmp(&left[*b].2)) else {
+            break;
+        };
+        let (color, lab, _) = left.swap_remove(next);
+        for other in &mut left {
+            other.2 = other.2.min(distance(lab, other.1));
+        }
+        chosen.push(color);
+    }
+    chosen
+}
+
+fn distance(a: [f32; 3], b: [f32; 3]) -> f32 {
+    let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
+    squares.sum::<f32>().sqrt()
+}
+
+/// A colour in Oklab (Ottosson 2020), where equal distances look equally different.
+fn oklab(color: Color32) -> [f32; 3] {
+    let [r, g, b] = [color.r(), color.g(), color.b()].map(|v| srgb_to_linear(f32::from(v) / 255.0));
+    let l = (0.412_221_46 * r + 0.536_332_55 * g + 0.051_445_995 * b).cbrt();
+    let m = (0.211_903_5 * r + 0.680_699_5 * g + 0.107_396_96 * b).cbrt();
+    let s = (0.088_302_46 * r + 0.281_718_85 * g + 0.629_978_7 * b).cbrt();
+    [
+        0.210_454_26 * l + 0.793_617_8 * m - 0.004_072_047 * s,
+        1.977_998_5 * l - 2.428_592_2 * m + 0.450_593_7 * s,
+        0.025_904_037 * l + 0.782_771_77 * m - 0.808_675_77 * s,
+    ]
 }
 
 /// A picture with a timing overlay.
@@ -271,7 +307,7 @@ pub fn stamped(gpu: &Arc<Gpu>, texels: &Texels, timers: &Timers) -> Result<Texel
 
 #[cfg(test)]
 mod tests {
-    use super::{by_stage, color, fitting, numbered};
+    use super::{by_stage, color, distance, fitting, oklab};
     use egui::Color32;
 
     #[test]
@@ -297,19 +333,20 @@ mod tests {
         let names: Vec<String> = (0..60).map(|i| format!("pass {i}")).collect();
         let colours: Vec<Color32> = names.iter().map(|n| color(n)).collect();
         assert_eq!(names.iter().map(|n| color(n)).collect::<Vec<_>>(), colours);
-        // Only the first fifty; later ones are closer together.
-        let first: Vec<Color32> = (0..50).map(numbered).collect();
-        let far = |a: Color32, b: Color32| {
-            a.to_array()
+        let closest = |count: usize| {
+            let list: Vec<[f32; 3]> = super::palette()[..count]
                 .iter()
-                .zip(b.to_array())
-                .any(|(a, b)| a.abs_diff(b) > 3)
+                .map(|c| oklab(*c))
+                .collect();
+            let pairs = (0..count).flat_map(|i| (0..i).map(move |j| (i, j)));
+            let apart = pairs.map(|(i, j)| distance(list[i], list[j]));
+            apart.fold(f32::INFINITY, f32::min)
         };
+        // A difference of 0.02 is just noticeable.
+        let found = [closest(12), closest(24), closest(48)];
         assert!(
-            first
-                .iter()
-                .enumerate()
-                .all(|(i, a)| first[..i].iter().all(|b| far(*a, *b)))
+            found[0] > 0.14 && found[1] > 0.09 && found[2] > 0.06,
+            "{found:?}"
         );
     }
 
