@@ -46,7 +46,7 @@ view: ## Open the workbench
 shot: ## Take the README's picture of the workbench
 	@scripts/setup.sh build run
 	@$(CONELAB) screenshot configs/rays.ron --scene atrium --window 1600x900 \
-		--click Compare --click "raster | tessellated" --click Time --click continuous --measure 400 $(ARGS) -o docs/workbench.jpg
+		--click Compare --click "raster | tessellated" --click Profiler --click continuous --measure 400 $(ARGS) -o docs/workbench.jpg
 
 quick: ## Run the tests that take a minute together
 	@scripts/setup.sh build run test

@@ -14,7 +14,7 @@ home=$(mktemp -d)
 trap 'rm -rf "$home"' EXIT
 cp -r passes shaders configs "$home/"
 export CONELAB_HOME=$home
-for tab in Scene Time; do
+for tab in Scene Profiler; do
     echo "tab $tab, two voxelizers, rendering on"
     "$conelab" screenshot --scene "$scene" --size "$size" --click Compare --click "raster | tessellated" --click "$tab" \
         --click continuous \

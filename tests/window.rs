@@ -641,7 +641,7 @@ fn unchanged_passes_are_skipped_at_a_click() {
     let mut driver = small();
     let first = driver.first_picture();
     driver.click("", "continuous");
-    driver.click("", "Time");
+    driver.click("", "Profiler");
     let mark = driver.now();
     driver.event(mark, "picture");
     assert!(
@@ -651,13 +651,13 @@ fn unchanged_passes_are_skipped_at_a_click() {
             .all(|e| e["event"] != "picture" || e["skipped"] == 0),
         "all is done"
     );
-    driver.click("", "what changes");
+    driver.click("", "Skip unchanged passes");
     let skipped =
         |e: &Value| e["event"] == "picture" && e["skipped"].as_u64().is_some_and(|n| n > 20);
     let still = driver.wait(mark, "most passes are skipped", skipped);
     assert_eq!(still["fingerprint"], first, "the same picture");
     let mark = driver.now();
-    driver.click("", "what changes");
+    driver.click("", "Skip unchanged passes");
     let all = driver.wait(mark, "all passes run", |e| {
         e["event"] == "picture" && e["skipped"] == 0
     });
@@ -778,7 +778,7 @@ fn the_camera_follows_a_path_and_the_tabs_show_what_they_are_for() {
     driver.keys(&[0xff1b]);
     driver.picture(mark, 0, &turned);
 
-    driver.click("", "Time");
+    driver.click("", "Profiler");
     driver.texts_until("the passes", |texts| {
         texts.iter().any(|t| t.contains("shading"))
     });
@@ -835,7 +835,7 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     driver.texts_until("why it does not run", |texts| {
         texts
             .iter()
-            .any(|t| t == "does not run: tessellates == 1 is false")
+            .any(|t| t == "does not run: needs tessellates == 1")
     });
     driver.find("Button", "voxelizer = tessellated");
 

@@ -131,7 +131,7 @@ const BUTTONS: [(&str, &str); 5] = [
         "A | B",
         "two experiments side by side; each has its parameters, picked at the left",
     ),
-    ("Time", "what each pass takes, and memory"),
+    ("Profiler", "GPU and CPU time per frame and pass, memory"),
     (
         "Chart",
         "error against the path-traced reference, over time; it can be gathered there",

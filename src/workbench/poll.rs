@@ -119,6 +119,10 @@ impl Workbench {
             Report::Loaded(scene) => self.loaded(scene),
             Report::LoadFailed(why) => self.load_failed(why),
             Report::Checks(side, failed) => self.sides[side].checks = failed,
+            Report::Statistics(side, result) => self.event(
+                "pipeline statistics",
+                json!({ "side": side, "passes": result.map_or(0, |p| p.len()) }),
+            ),
             Report::DeviceFailed(text) => {
                 self.event("device failed", json!({ "text": text }));
                 self.device = None;

@@ -45,6 +45,8 @@ pub enum Order {
     Capture(usize, String, Vec<String>, Rows),
     /// Measure the error of what side A or B shows against its reference.
     MeasureError(usize, ErrorQuery),
+    /// Ask the driver about the pipelines of side A or B.
+    PipelineStatistics(usize),
     /// Render this number of further frames of the same picture, to measure.
     Frames(u32),
     /// Stop the loading of a scene.
@@ -510,6 +512,7 @@ impl Run<'_> {
                     self.capture(side, name, resources, timers)
                 }
                 Order::MeasureError(side, query) => self.measure_error(side, query),
+                Order::PipelineStatistics(side) => self.pipeline_statistics(side),
                 Order::Frames(count) => self.request_frames(Need::Frames(count)),
                 Order::RenderDoc => {
                     self.renderdoc = true;
@@ -523,6 +526,19 @@ impl Run<'_> {
             self.change(latest)?;
         }
         Ok(())
+    }
+
+    /// Asks the driver about a side's pipelines on a thread of its own: compiling may take seconds.
+    fn pipeline_statistics(&self, side: usize) {
+        let Some(session) = &self.sides[side].session else {
+            return;
+        };
+        let (request, out) = (session.program.statistics(), self.out.clone());
+        std::thread::spawn(move || {
+            let result = guard::guarded(|| request.run());
+            let result = result.and_then(|asked| asked.map_err(|e| e.to_string()));
+            out.send(Report::Statistics(side, result));
+        });
     }
 
     /// Takes in a new request.

@@ -8,7 +8,7 @@ use crate::graph::link::Linked;
 use crate::graph::param::Params;
 use crate::graph::plan::TexturePlan;
 use crate::graph::run::Change;
-use crate::graph::run::FrameTimes;
+use crate::graph::run::{FrameTimes, PassExecutables};
 use crate::scene::Scene;
 use crate::vulkan::Buffer;
 use crate::workbench::read_back::Content;
@@ -159,6 +159,8 @@ pub enum Report {
     Checks(usize, Vec<String>),
     /// A capture was made, or why not.
     Captured(Result<PathBuf, String>),
+    /// The driver's statistics of a side's pipelines, or the reason for having none.
+    Statistics(usize, Result<Vec<PassExecutables>, String>),
     /// The error of a shown picture.
     Error(ErrorResult),
     /// The device failed, and what can be done: the engine waits.

@@ -3,6 +3,7 @@
 use super::compare::Mode;
 use crate::results::timers::{Rows, Timers, draw};
 use crate::workbench::Workbench;
+use crate::workbench::tabs::times::BETWEEN;
 use egui::{Painter, Rect};
 
 impl Workbench {
@@ -40,8 +41,8 @@ impl Workbench {
             picture.size,
             &means.passes,
         );
-        timers.mark_skipped(&info.graph, &means.rests);
-        timers.rows.push((means.outside.0.into(), means.outside.1));
+        timers.mark_skipped(&info.graph, &means.skipped);
+        timers.rows.push((BETWEEN.into(), means.between));
         if self.desired.sides[1].is_some() {
             timers.title[0].insert_str(0, ["A: ", "B: "][side.min(1)]);
         }

@@ -355,7 +355,7 @@ impl Workbench {
     ) {
         ui.horizontal(|ui| {
             let mut on = !off.iter().any(|o| o == name);
-            let about = "If off, its output is its `instead`, or zeros. Saved with the experiment";
+            let about = "When off, its outputs fall back to the pass's `instead`, or to zero. Saved with the experiment";
             if ui.checkbox(&mut on, "on").on_hover_text(about).changed() {
                 match on {
                     true => off.retain(|o| o != name),

@@ -1,10 +1,16 @@
-//! Stacked bars, one a frame, as one mesh.
+//! The frame graph: one stacked bar per frame, as one mesh.
 
 use super::history::{History, KEPT};
+use super::table::digits;
 use crate::results::timers::color;
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
-use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Ui, Vec2};
+use egui::{Align2, Color32, Pos2, Rect, Response, Sense, Shape, TextStyle, Ui, Vec2};
 use std::sync::Arc;
+
+/// Height of a mark on a bar that is cut off, points.
+const CUT: f32 = 3.0;
+/// Width of the labels on the right, in characters.
+const LABELS: f32 = 9.0;
 
 /// A chart's mesh, kept while nothing changes.
 #[derive(Default)]
@@ -20,116 +26,153 @@ struct Key {
     passes: usize,
     top: f64,
     hovered: Option<String>,
+    cut: Color32,
+}
+
+/// How a chart is drawn.
+pub struct Look<'a> {
+    /// 0 is A, 1 is B.
+    pub side: usize,
+    pub height: f32,
+    /// Time at the upper edge, ms.
+    pub top: f64,
+    /// Number of the held frame.
+    pub held: Option<u64>,
+    /// Name of the highlighted pass.
+    pub hovered: Option<&'a str>,
+}
+
+/// The frame and pass under the pointer.
+pub struct Pointed {
+    pub frame: u64,
+    pub pass: Option<String>,
+}
+
+/// The time at the upper edge, ms: slightly above the 95th percentile, so that one slow frame does
+/// not flatten the others.
+pub fn top(p95: f64) -> f64 {
+    p95.max(1e-3) * 1.15
 }
 
 impl Chart {
-    /// Draws it; the pass under the pointer and the chart's response.
     pub fn show(
         &mut self,
         ui: &mut Ui,
-        side: usize,
         history: &History,
-        top: f64,
-        hovered: Option<&str>,
-    ) -> Option<(String, Response)> {
-        let size = Vec2::new(ui.available_width(), super::CHART);
+        look: &Look<'_>,
+    ) -> (Response, Option<Pointed>) {
+        let size = Vec2::new(ui.available_width(), look.height);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-        let name = ["A, frames", "B, frames"][side.min(1)];
+        let name = ["A, frames", "B, frames"][look.side.min(1)];
         response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Other, true, name));
+        let font = TextStyle::Small.resolve(ui.style());
+        let font = egui::FontId::new(font.size.max(12.0), font.family);
+        let mut bars = rect;
+        bars.max.x -= LABELS * 0.55 * font.size;
         let painter = ui.painter_at(rect);
-        painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
+        painter.rect_filled(bars, 0.0, ui.visuals().extreme_bg_color);
+        let cut = ui.visuals().warn_fg_color;
         let key = Key {
-            rect,
+            rect: bars,
             changes: history.changes,
             passes: history.passes.len(),
-            top,
-            hovered: hovered.map(str::to_string),
+            top: look.top,
+            hovered: look.hovered.map(str::to_string),
+            cut,
         };
         if self.key.as_ref() != Some(&key) {
-            self.mesh = Arc::new(mesh(rect, history, top, hovered));
+            self.mesh = Arc::new(mesh(bars, history, look.top, look.hovered, cut));
             self.key = Some(key);
         }
         painter.add(Shape::Mesh(self.mesh.clone()));
-        let weak = ui.visuals().weak_text_color();
-        // A round number on the axis is no measurement.
-        let tick = round_below(top / 1.05);
-        let line = rect.bottom() - (f64::from(rect.height()) * tick / top.max(1e-9)) as f32;
-        painter.hline(rect.x_range(), line, (0.5, weak));
-        let font = FontId::proportional(11.0);
-        let at = Pos2::new(rect.right() - 3.0, line + 1.0);
+        let (text, weak) = (ui.visuals().text_color(), ui.visuals().weak_text_color());
+        let (median, p95) = history.level();
+        if !history.frames.is_empty() {
+            let labels = [
+                ("p95", p95, Align2::LEFT_BOTTOM),
+                ("med", median, Align2::LEFT_TOP),
+            ];
+            for (name, ms, align) in labels {
+                let part = (ms / look.top.max(1e-9)).min(1.0);
+                let y = bars.bottom() - bars.height() * part as f32;
+                painter.hline(bars.x_range(), y, (1.0, weak));
+                let y = y.clamp(rect.top() + font.size, rect.bottom() - font.size);
+                let at = Pos2::new(bars.right() + 3.0, y);
+                painter.text(
+                    at,
+                    align,
+                    format!("{name} {}", digits(ms)),
+                    font.clone(),
+                    text,
+                );
+            }
+        }
+        let at = rect.left_top() + Vec2::splat(3.0);
         painter.text(
             at,
-            Align2::RIGHT_TOP,
-            format!("{tick} ms"),
-            font.clone(),
-            weak,
-        );
-        let name = ["A", "B"][side.min(1)];
-        painter.text(
-            rect.left_top() + Vec2::splat(3.0),
             Align2::LEFT_TOP,
-            name,
+            ["A", "B"][look.side.min(1)],
             font,
-            ui.visuals().text_color(),
+            text,
         );
-        let at = response.hover_pos()?;
-        let name = under(rect, history, top, at)?;
-        Some((name, response))
+        if let Some(index) = look.held.and_then(|n| n.checked_sub(history.first)) {
+            let (x, step) = place(bars, history.frames.len(), index as usize);
+            let column = Rect::from_x_y_ranges(x..=x + step, bars.y_range());
+            let stroke = ui.visuals().selection.stroke;
+            painter.rect_stroke(column.expand(1.0), 0.0, stroke, egui::StrokeKind::Outside);
+        }
+        let pointed = response
+            .hover_pos()
+            .and_then(|at| under(bars, history, look.top, at));
+        (response, pointed)
     }
 }
 
-/// The greatest of 1, 2 and 5 times a power of ten that is not above a number.
-fn round_below(x: f64) -> f64 {
-    if x <= 0.0 || !x.is_finite() {
-        return 0.0;
-    }
-    let power = 10.0_f64.powi(x.log10().floor() as i32);
-    [5.0, 2.0, 1.0]
+/// Number of bars that fit: a short history has wider bars.
+fn slots(count: usize) -> usize {
+    [KEPT / 4, KEPT / 2]
         .into_iter()
-        .map(|n| n * power)
-        .find(|n| *n <= x * 1.000_001)
-        .unwrap_or(power)
+        .find(|n| count <= *n)
+        .unwrap_or(KEPT)
 }
 
-/// Bottom left of the bar of frame `i`; the newest is at the right edge.
+/// Left edge of the bar of frame `i` and the width of a bar; the newest is at the right edge.
 fn place(rect: Rect, count: usize, i: usize) -> (f32, f32) {
-    let step = rect.width() / KEPT as f32;
-    (rect.right() - step * (count - i) as f32, step)
+    let step = rect.width() / slots(count) as f32;
+    (rect.right() - step * count.saturating_sub(i) as f32, step)
 }
 
-fn mesh(rect: Rect, history: &History, top: f64, hovered: Option<&str>) -> Mesh {
+fn mesh(rect: Rect, history: &History, top: f64, hovered: Option<&str>, cut: Color32) -> Mesh {
     let mut mesh = Mesh::default();
-    let scale = f64::from(rect.height()) / top.max(1e-9);
-    let colors: Vec<Color32> = history
-        .passes
-        .iter()
-        .map(|(_, name)| {
-            let color = color(name);
-            if hovered.is_some_and(|h| h != name) {
-                color.gamma_multiply(0.35)
-            } else {
-                color
-            }
-        })
-        .collect();
+    let height = f64::from(rect.height());
+    let scale = height / top.max(1e-9);
+    let shade = |name: &str| match hovered.is_some_and(|h| h != name) {
+        true => color(name).gamma_multiply(0.35),
+        false => color(name),
+    };
+    let colors: Vec<Color32> = history.passes.iter().map(|p| shade(&p.name)).collect();
     for (i, frame) in history.frames.iter().enumerate() {
         let (x, width) = place(rect, history.frames.len(), i);
         let (mut low, mut high) = (0.0, 0.0);
-        for ((number, _), color) in history.passes.iter().zip(&colors) {
-            high += frame.pass(*number) * scale;
+        let mut part = |from: f64, to: f64, color: Color32| {
+            let corner = |x: f32, y: f64| Pos2::new(x, rect.bottom() - y as f32);
+            let part = Rect::from_min_max(corner(x, to), corner(x + width, from));
+            quad(&mut mesh, part.intersect(rect), color);
+        };
+        for (pass, color) in history.passes.iter().zip(&colors) {
+            high += frame.pass(pass.number) * scale;
             // Invisible parts cost no triangles: they are added to the next part.
             if high - low < 0.4 {
                 continue;
             }
-            let box_ = Rect::from_min_max(
-                Pos2::new(x, rect.bottom() - high as f32),
-                Pos2::new(x + width, rect.bottom() - low as f32),
-            );
-            quad(&mut mesh, box_.intersect(rect), *color);
+            part(low, high, *color);
             low = high;
-            if high > f64::from(rect.height()) {
+            if high > height {
                 break;
             }
+        }
+        if frame.times.gpu_ms > top {
+            part(height - f64::from(CUT), height, cut);
         }
     }
     mesh
@@ -154,57 +197,69 @@ fn quad(mesh: &mut Mesh, r: Rect, color: Color32) {
     mesh.indices.extend([0, 1, 2, 2, 1, 3].map(|i| first + i));
 }
 
-/// The pass at a point.
-fn under(rect: Rect, history: &History, top: f64, at: Pos2) -> Option<String> {
-    let count = history.frames.len();
-    let step = rect.width() / KEPT as f32;
+/// The frame and pass at a point.
+fn under(rect: Rect, history: &History, top: f64, at: Pos2) -> Option<Pointed> {
+    if !rect.contains(at) {
+        return None;
+    }
+    let step = rect.width() / slots(history.frames.len()) as f32;
     let back = ((rect.right() - at.x) / step).floor().max(0.0) as usize;
-    let frame = history.frames.get(count.checked_sub(back + 1)?)?;
+    let index = history.frames.len().checked_sub(back + 1)?;
+    let frame = history.frames.get(index)?;
     let ms = f64::from((rect.bottom() - at.y) / rect.height()) * top;
     let mut sum = 0.0;
-    let found = history.passes.iter().find(|(number, _)| {
-        sum += frame.pass(*number);
+    let found = history.passes.iter().find(|pass| {
+        sum += frame.pass(pass.number);
         sum >= ms
     });
-    found.map(|p| p.1.clone())
+    Some(Pointed {
+        frame: history.first + index as u64,
+        pass: found.map(|p| p.name.clone()),
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::history::Frame;
+    use super::super::history::tests::{frame, pass};
     use super::*;
-    use crate::graph::run::FrameTimes;
+
+    const AREA: Rect = Rect {
+        min: Pos2::ZERO,
+        max: Pos2::new(240.0, 100.0),
+    };
 
     #[test]
     fn bars_stand_where_the_pointer_finds_them() {
-        let mut history = History::new(vec![(4, "below".into()), (7, "above".into())]);
-        history.push(Frame {
-            times: FrameTimes {
-                gpu_ms: 3.0,
-                passes: vec![(4, 1.0), (7, 2.0)],
-                ..FrameTimes::default()
-            },
-            ..Frame::default()
-        });
-        let rect = Rect::from_min_size(Pos2::ZERO, Vec2::new(240.0, 100.0));
-        let at = |x: f32, y: f32| under(rect, &history, 4.0, Pos2::new(x, y));
-        assert_eq!(at(239.5, 90.0).as_deref(), Some("below"));
-        assert_eq!(at(239.5, 40.0).as_deref(), Some("above"));
-        assert_eq!((at(239.5, 10.0), at(100.0, 90.0)), (None, None));
-        let mesh = mesh(rect, &history, 4.0, None);
+        let mut history = History::new(vec![pass(0, "below", ""), pass(1, "above", "")]);
+        history.push(frame(&[1.0, 2.0]));
+        history.first = 7;
+        let at = |x: f32, y: f32| under(AREA, &history, 4.0, Pos2::new(x, y));
+        let named = |x: f32, y: f32| at(x, y).map(|p| (p.frame, p.pass));
+        assert_eq!(named(239.5, 90.0), Some((7, Some("below".into()))));
+        assert_eq!(named(239.5, 40.0), Some((7, Some("above".into()))));
+        assert_eq!(named(239.5, 10.0), Some((7, None)));
+        assert!(at(100.0, 90.0).is_none() && at(260.0, 90.0).is_none());
+        let mesh = mesh(AREA, &history, 4.0, None, Color32::RED);
         assert_eq!(mesh.vertices.len(), 8);
         assert_eq!(
             (mesh.vertices[0].pos, mesh.vertices[7].pos),
-            (Pos2::new(239.0, 75.0), Pos2::new(240.0, 75.0))
+            (Pos2::new(236.0, 75.0), Pos2::new(240.0, 75.0))
         );
         assert_eq!(mesh.vertices[0].color, color("below"));
     }
 
     #[test]
-    fn the_axis_has_round_numbers() {
-        assert_eq!(
-            [1032.67, 0.73, 2.0, 0.0].map(round_below),
-            [1000.0, 0.5, 2.0, 0.0]
-        );
+    fn a_spike_is_cut_off_with_a_mark() {
+        let mut history = History::new(vec![pass(0, "one", "")]);
+        for ms in [2.0, 2.0, 90.0, 2.0] {
+            history.push(frame(&[ms]));
+        }
+        let mesh = mesh(AREA, &history, 4.0, None, Color32::RED);
+        let marks = mesh.vertices.iter().filter(|v| v.color == Color32::RED);
+        let places: Vec<Pos2> = marks.map(|v| v.pos).collect();
+        assert_eq!(places[0], Pos2::new(232.0, 0.0));
+        assert_eq!(places[3], Pos2::new(236.0, CUT));
+        assert_eq!([1, 60, 61, 240].map(slots), [60, 60, 120, 240]);
+        assert_eq!(places.len(), 4, "one frame of four");
     }
 }

@@ -1,37 +1,51 @@
-//! GPU and CPU time per pass, memory per resource, and their export.
+//! The profiler: GPU and CPU time per frame, stage and pass, memory per resource, and exports.
 
 mod chart;
+mod details;
 mod export;
+mod files;
 mod history;
+mod table;
+mod trace;
+mod view;
 
 use super::Tab;
-use crate::files::FileError;
-use crate::graph::run::Execution;
+use crate::graph::run::{Execution, PassExecutables};
 use crate::results::timers;
 use crate::workbench::Workbench;
-use crate::workbench::engine::report::{GraphInfo, PassUses, PictureReport, Report};
-use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, TextureId, Ui, Vec2};
-use history::{Frame, History, KEPT, OUTSIDE, Row};
-use std::path::{Path, PathBuf};
+use crate::workbench::engine::report::{GraphInfo, PictureReport, Report};
+use chart::{Chart, Look};
+use details::Wish;
+use egui::{TextureId, Ui};
+use history::{Frame, History};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+pub(crate) use table::BETWEEN;
+use table::{Row, Sort, Table};
+use view::{Grid, Kind, Line};
 
 /// Interval between updates of a table.
 const TABLE_AGE: Duration = Duration::from_millis(250);
-/// Height of a row of the tables, points.
-const ROW: f32 = 16.0;
-/// Width of a number, points.
-const NUMBER: f32 = 38.0;
-/// Height of a chart, points.
-const CHART: f32 = 90.0;
+/// Height of the chart of one side and of each of two, points.
+const CHART: [f32; 2] = [96.0, 76.0];
 
 /// State of this tab.
 #[derive(Default)]
 pub struct Times {
     sides: [History; 2],
-    charts: [chart::Chart; 2],
-    rows: Vec<Row>,
-    made: Option<Instant>,
+    /// The histories as they were when the user stopped taking in frames.
+    frozen: Option<Box<[History; 2]>>,
+    held: Option<Held>,
+    charts: [Chart; 2],
+    table: Table,
+    /// When the table was made, and from which changes.
+    made: Option<(Instant, [u64; 2])>,
+    sort: Sort,
+    /// Names of folded stages.
+    folded: BTreeSet<String>,
+    /// Name of the pass with details.
+    selected: Option<String>,
     /// Name and bytes of A's resources, the largest first.
     memory: Vec<(String, u64)>,
     scene_bytes: u64,
@@ -39,6 +53,23 @@ pub struct Times {
     hovered: Option<String>,
     /// The change count of a side's history, and its time.
     means: [Option<(u64, Instant, Arc<Means>)>; 2],
+    statistics: [Asked; 2],
+}
+
+/// A frame that the table shows instead of means.
+struct Held {
+    /// Number of the frame since the histories began.
+    number: u64,
+    frames: [Option<Frame>; 2],
+}
+
+/// Statistics of a side's pipelines.
+#[derive(Default)]
+enum Asked {
+    #[default]
+    No,
+    Waiting,
+    Answered(Result<Vec<PassExecutables>, String>),
 }
 
 /// Mean times of a side's last frames on the GPU.
@@ -47,15 +78,15 @@ pub struct Means {
     /// (number, ms) of its passes, in order; none without frames.
     pub passes: Vec<(usize, f64)>,
     /// Numbers of the passes that the last frame skipped.
-    pub rests: Vec<usize>,
-    /// Name and time of what no pass takes, ms.
-    pub outside: (&'static str, f64),
+    pub skipped: Vec<usize>,
+    /// Time of no pass, ms.
+    pub between: f64,
     /// From the first command to the last, ms.
     pub total: f64,
 }
 
 impl Tab for Times {
-    const TITLE: &'static str = "Time";
+    const TITLE: &'static str = "Profiler";
     const ICON: &'static str = egui_phosphor::regular::GAUGE;
 
     fn show(workbench: &mut Workbench, ui: &mut Ui, _: &[TextureId]) {
@@ -68,6 +99,9 @@ impl Tab for Times {
             Report::Built(built) => times.built(built.side, &built.info),
             Report::Restarted => times.restarted(),
             Report::Picture(picture) => times.note(picture),
+            Report::Statistics(side, result) => {
+                times.statistics[*side] = Asked::Answered(result.clone());
+            }
             _ => {}
         }
     }
@@ -77,25 +111,22 @@ impl Times {
     /// Takes in the times of a frame.
     fn note(&mut self, picture: &PictureReport) {
         // The passes of a preview are those of another graph.
-        if let Some(side) = self
-            .sides
-            .get_mut(picture.side)
-            .filter(|_| !picture.preview)
-        {
+        let side = self.sides.get_mut(picture.side);
+        if let Some(side) = side.filter(|_| !picture.preview) {
             side.push(Frame::of(picture));
         }
     }
 
-    /// A side runs a new session, so its earlier times are dropped.
+    /// A side runs a new session. Frames of A and B count from the same moment, so both histories
+    /// begin again.
     fn built(&mut self, side: usize, info: &GraphInfo) {
-        let pass = |i: &usize| {
-            info.graph
-                .passes
-                .get(*i)
-                .map(|p| (*i, p.value.name.value.clone()))
-        };
-        self.sides[side] = History::new(info.passes.iter().filter_map(pass).collect());
-        (self.made, self.means) = (None, [None, None]);
+        self.sides[side] = History::of(info);
+        self.statistics[side] = Asked::No;
+        // Every pass gets its colour in the graph's order, however the tables are sorted later.
+        for pass in &self.sides[side].passes {
+            timers::color(&pass.name);
+        }
+        self.restarted();
         if side == 0 {
             self.memory.clone_from(&info.memory);
             self.memory
@@ -107,9 +138,34 @@ impl Times {
     /// A and B restart together.
     fn restarted(&mut self) {
         for side in &mut self.sides {
-            *side = History::new(std::mem::take(&mut side.passes));
+            *side = History {
+                changes: side.changes + 1,
+                ..History::new(std::mem::take(&mut side.passes))
+            };
         }
         (self.made, self.means) = (None, [None, None]);
+        if self.frozen.is_none() {
+            self.held = None;
+        }
+    }
+
+    /// The histories that the tab shows.
+    fn shown(&self) -> &[History; 2] {
+        self.frozen.as_deref().unwrap_or(&self.sides)
+    }
+
+    /// Stops and continues to take in frames.
+    fn freeze(&mut self, freezes: bool) {
+        self.frozen = freezes.then(|| Box::new(self.sides.clone()));
+        (self.made, self.held) = (None, None);
+    }
+
+    /// Shows a frame in the table; the same one again: the means.
+    fn hold(&mut self, number: u64) {
+        let frames = self.shown().each_ref().map(|side| side.at(number).cloned());
+        let again = self.held.as_ref().is_some_and(|h| h.number == number);
+        self.held = (!again).then_some(Held { number, frames });
+        self.made = None;
     }
 
     /// Mean times of a side, computed as often as the table and not in every frame of the
@@ -126,354 +182,272 @@ impl Times {
                 return known.clone();
             }
         }
-        // Both sides are averaged over the same number of frames.
-        let count = if both {
-            self.sides[0].frames.len().min(self.sides[1].frames.len())
-        } else {
-            KEPT
+        let numbers = history::common(&self.sides, both);
+        let frames = history.range(numbers);
+        let count = frames.clone().count();
+        let mean = |time: &dyn Fn(&Frame) -> f64| {
+            frames.clone().map(time).sum::<f64>() / count.max(1) as f64
         };
-        let of = |time: &dyn Fn(&Frame) -> f64| history.mean(count, time);
-        let passes = history
-            .passes
-            .iter()
-            .filter_map(|p| Some((p.0, of(&|f| f.pass(p.0))?)))
-            .collect();
-        let rests = history
-            .frames
-            .back()
-            .map_or(Vec::new(), |f| f.times.skipped.clone());
-        let total = of(&|f: &Frame| f.times.gpu_ms).unwrap_or(0.0);
-        let outside = (OUTSIDE, of(&Frame::outside).unwrap_or(0.0));
+        let of_pass = |pass: &history::Pass| (pass.number, mean(&|f| f.pass(pass.number)));
+        let shown = history.passes.iter().filter(|_| count > 0);
+        let last = history.frames.back();
         let made = Arc::new(Means {
-            passes,
-            rests,
-            outside,
-            total,
+            passes: shown.map(of_pass).collect(),
+            skipped: last.map_or(Vec::new(), |f| f.times.skipped.clone()),
+            between: mean(&Frame::between),
+            total: mean(&|f| f.times.gpu_ms),
         });
         self.means[side] = Some((history.changes, Instant::now(), made.clone()));
         made
     }
 
-    fn refresh(&mut self, both: bool) {
+    /// Makes the table again if frames came, at most four times a second.
+    fn refresh(&mut self, ui: &Ui, both: bool) {
         if !both && !self.sides[1].frames.is_empty() {
             self.sides[1] = History::default();
             self.made = None;
         }
-        if self.made.is_none_or(|t| t.elapsed() > TABLE_AGE) {
-            self.made = Some(Instant::now());
-            self.rows = history::rows(&self.sides[0], both.then_some(&self.sides[1]));
+        let changes = self.shown().each_ref().map(|side| side.changes);
+        if let Some((since, of)) = self.made {
+            let age = since.elapsed();
+            if of == changes {
+                return;
+            }
+            if age < TABLE_AGE {
+                ui.ctx().request_repaint_after(TABLE_AGE - age);
+                return;
+            }
         }
+        let held = self.held.as_ref().map(|held| &held.frames);
+        self.table = Table::new(self.shown(), both, held);
+        self.made = Some((Instant::now(), changes));
     }
+}
+
+/// Clicks of one frame of the interface.
+#[derive(Default)]
+struct Done {
+    /// Number of the clicked frame.
+    frame: Option<u64>,
+    /// The clicked pass.
+    pass: Option<String>,
+    /// The clicked stage.
+    stage: Option<String>,
+    sort: Option<Sort>,
+    hovered: Option<String>,
+    wish: Option<Wish>,
 }
 
 impl Workbench {
     fn times_tab(&mut self, ui: &mut Ui) {
         let both = self.desired.sides[1].is_some();
-        self.tabs.times.refresh(both);
+        self.tabs.times.refresh(ui, both);
+        // The scroll bar must not cover the last column.
+        ui.set_max_width(ui.available_width() - 8.0);
+        self.profiler_controls(ui);
+        let mut done = Done::default();
+        self.frame_graphs(ui, both, &mut done);
+        let grid = Grid::new(ui, &self.tabs.times.table);
+        let times = &self.tabs.times;
+        done.sort = grid.head(ui, &times.table, times.sort);
+        for row in [&times.table.total, &times.table.cpu] {
+            let line = Line {
+                row,
+                kind: Kind::Sum,
+                highlighted: false,
+                selected: false,
+                most: 0.0,
+            };
+            grid.line(ui, &times.table, &line);
+        }
+        ui.separator();
         egui::ScrollArea::vertical()
             .auto_shrink(false)
             .show(ui, |ui| {
-                // The scroll bar must not cover the last column.
-                ui.set_max_width(ui.available_width() - 8.0);
-                self.exports(ui);
-                let mut hovered = None;
-                let mut clicked = None;
-                let top = (0..=usize::from(both))
-                    .map(|i| self.tabs.times.sides[i].top())
-                    .fold(0.0, f64::max);
-                for i in 0..=usize::from(both) {
-                    let shown = self.tabs.times.charts[i].show(
-                        ui,
-                        i,
-                        &self.tabs.times.sides[i],
-                        top,
-                        self.tabs.times.hovered.as_deref(),
-                    );
-                    let Some((name, response)) = shown else {
-                        continue;
-                    };
-                    if response.clicked() {
-                        clicked = Some((i, name.clone()));
-                    }
-                    response.on_hover_text_at_pointer(self.pass_text(i, &name));
-                    hovered = Some(name);
-                }
-                ui.add_space(4.0);
-                head(ui, both);
-                for n in 0..self.tabs.times.rows.len() {
-                    let row = &self.tabs.times.rows[n];
-                    let response = line(ui, row, both, self.tabs.times.hovered.as_deref());
-                    if !row.is_pass || !response.hovered() {
-                        continue;
-                    }
-                    let (side, name) = (usize::from(row.mean[0].is_none()), row.name.clone());
-                    if response.clicked() {
-                        clicked = Some((side, name.clone()));
-                    }
-                    response.on_hover_text_at_pointer(self.pass_text(side, &name));
-                    hovered = Some(name);
-                }
-                self.tabs.times.hovered = hovered;
-                if let Some((side, name)) = clicked {
-                    self.inspect_pass(side, &name);
-                }
+                ui.spacing_mut().item_spacing.y = 1.0;
+                self.rows(ui, &grid, &mut done);
                 ui.separator();
-                memory(ui, &self.tabs.times.memory, self.tabs.times.scene_bytes);
+                self.tabs.times.memory(ui, &grid);
             });
+        if let Some(wish) = done.wish.take() {
+            self.carry_out(wish);
+        }
+        self.tabs.times.done(done);
     }
 
-    fn exports(&mut self, ui: &mut Ui) {
-        let mut file = None;
-        ui.horizontal(|ui| {
-            let sides = &self.tabs.times.sides;
-            let some = sides.iter().any(|s| !s.frames.is_empty());
-            let button = |ui: &mut Ui, text: &str, about: &str| {
-                let button = egui::Button::new(text).small();
-                ui.add_enabled(some, button).on_hover_text(about).clicked()
-            };
-            if button(ui, "CSV", "A row a frame, a column a pass, into captures/") {
-                file = Some(("csv", export::csv(sides)));
+    /// Buttons for exports and for which frames are shown.
+    fn profiler_controls(&mut self, ui: &mut Ui) {
+        let some = self.tabs.times.shown().iter().any(|s| !s.frames.is_empty());
+        let button = |ui: &mut Ui, text: &str, about: &str| {
+            let response = ui.add_enabled(some, egui::Button::new(text));
+            response.on_hover_text(about).clicked()
+        };
+        ui.horizontal_wrapped(|ui| {
+            let mut frozen = self.tabs.times.frozen.is_some();
+            let about = "Keep these frames and ignore new ones. The picture goes on";
+            if ui
+                .toggle_value(&mut frozen, "Freeze")
+                .on_hover_text(about)
+                .clicked()
+            {
+                self.tabs.times.freeze(frozen);
             }
-            let about = "For Perfetto or chrome://tracing, into captures/";
-            if button(ui, "trace", about) {
-                file = Some(("json", Ok(export::trace(sides))));
-            }
-            let kept = sides[0].frames.len();
             let mut changed = self.desired.execution == Execution::Incremental;
-            let about =
-                "Skips passes whose output would not change. The picture stays equal to the bit";
-            let text = egui::RichText::new("what changes").small();
-            let toggle = ui.toggle_value(&mut changed, text).on_hover_text(about);
-            if toggle.clicked() {
+            let about = "Skips passes with an unchanged result. The output is bit-identical";
+            let toggle = ui.toggle_value(&mut changed, "Skip unchanged passes");
+            if toggle.on_hover_text(about).clicked() {
                 self.desired.execution = match changed {
                     true => Execution::Incremental,
                     false => Execution::Full,
                 };
             }
-            ui.weak(format!("the last {kept} frames"));
-        });
-        if let Some((ending, bytes)) = file {
-            self.export(&format!("times-{}", self.experiment.name), ending, bytes);
-        }
-    }
-
-    /// Writes an export into `captures/`, with a message.
-    pub(crate) fn export(&mut self, name: &str, ending: &str, bytes: std::io::Result<Vec<u8>>) {
-        let written = bytes.map_err(|e| FileError::content(name.as_ref(), e));
-        let written = written.and_then(|b| write_free(&self.setup.home.root, name, ending, &b));
-        let ok = written.is_ok();
-        let text = match written {
-            Ok(path) => format!("wrote {}", path.display()),
-            Err(e) => format!("not written: {e}"),
-        };
-        self.event("exported", serde_json::json!({ "ok": ok, "text": text }));
-        self.messages.status = text;
-    }
-
-    /// The outputs of a pass in words.
-    fn pass_text(&self, side: usize, name: &str) -> String {
-        let list = self.pass_writes(side, name).join(", ");
-        match list.is_empty() {
-            true => name.to_string(),
-            false => format!("{name}\nwrites {list}\nclick to inspect it"),
-        }
-    }
-
-    fn pass_writes(&self, side: usize, name: &str) -> &[String] {
-        let Some(info) = &self.sides[side].info else {
-            return &[];
-        };
-        let named = |u: &&PassUses| info.graph.pass_name(u.pass) == name;
-        info.uses.iter().find(named).map_or(&[], |u| &u.writes)
-    }
-
-    /// Opens the first texture that a pass writes in the inspector.
-    fn inspect_pass(&mut self, side: usize, name: &str) {
-        let Some(info) = self.sides[side].info.clone() else {
-            return;
-        };
-        let texture = |n: &&String| info.graph.texture(n).is_some();
-        let Some(texture) = self.pass_writes(side, name).iter().find(texture).cloned() else {
-            self.messages.status = format!("{name} writes no texture");
-            return;
-        };
-        self.inspect(side, texture);
-    }
-}
-
-/// Writes `captures/NAME.ENDING` under `root`, or with a number behind the name when that exists.
-fn write_free(root: &Path, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, FileError> {
-    let stem: String = name
-        .chars()
-        .map(|c| {
-            if c.is_alphanumeric() || "-_".contains(c) {
-                c
-            } else {
-                '_'
+            let about = "A row per frame and a column per pass, as a file in captures/";
+            if button(ui, "Export CSV", about) {
+                self.export_csv();
             }
-        })
-        .collect();
-    for n in 1..10_000 {
-        let number = if n == 1 {
-            String::new()
-        } else {
-            format!("-{n}")
-        };
-        let path = root
-            .join("captures")
-            .join(format!("{stem}{number}.{ending}"));
-        match crate::files::write_new(&path, bytes) {
-            Err(e) if e.is_there() => {}
-            other => return other.map(|()| path),
-        }
-    }
-    Err(FileError::write(
-        &root.join("captures").join(stem),
-        "too many files of that name",
-    ))
-}
-
-/// Right edges of the columns of numbers, as shares of the width.
-fn columns(both: bool) -> &'static [f32] {
-    if both {
-        &[0.57, 0.73, 0.86, 1.0]
-    } else {
-        &[0.55, 0.70, 0.85, 1.0]
-    }
-}
-
-fn head(ui: &mut Ui, both: bool) {
-    let names: [&str; 4] = if both {
-        ["A ms", "B ms", "B/A", "A %"]
-    } else {
-        ["mean ms", "p95 ms", "share", "max ms"]
-    };
-    let (rect, response) =
-        ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
-    let color = ui.visuals().weak_text_color();
-    for (x, name) in columns(both).iter().zip(names) {
-        put(ui, rect, *x, name, color);
-    }
-    response.on_hover_text(if both {
-        "Means over the same number of the last frames of A and of B, which alternate"
-    } else {
-        "Mean, 95th percentile and maximum over the last frames; the share is that of the mean in the GPU's total"
-    });
-}
-
-fn put(ui: &Ui, rect: Rect, x: f32, text: &str, color: Color32) {
-    let at = Pos2::new(rect.left() + rect.width() * x - 2.0, rect.center().y);
-    ui.painter().text(
-        at,
-        Align2::RIGHT_CENTER,
-        text,
-        FontId::monospace(10.5),
-        color,
-    );
-}
-
-fn line(ui: &mut Ui, row: &Row, both: bool, hovered: Option<&str>) -> Response {
-    let (rect, response) =
-        ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::click());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &row.name));
-    if !ui.is_rect_visible(rect) {
-        return response;
-    }
-    if response.hovered() || (row.is_pass && hovered == Some(row.name.as_str())) {
-        ui.painter()
-            .rect_filled(rect, 2.0, ui.visuals().widgets.hovered.weak_bg_fill);
-    }
-    // Passes skipped on both sides are grey.
-    let skipped = [0, 1].map(|side| row.mean[side].is_none() || row.skipped[side]) == [true; 2]
-        && row.skipped != [false; 2];
-    let color = if skipped {
-        ui.visuals().weak_text_color()
-    } else {
-        ui.visuals().text_color()
-    };
-    let mut left = rect.left();
-    if row.is_pass {
-        let swatch =
-            Rect::from_center_size(Pos2::new(left + 5.0, rect.center().y), Vec2::splat(8.0));
-        ui.painter()
-            .rect_filled(swatch, 1.0, timers::color(&row.name));
-        left += 13.0;
-    }
-    // Names give way to numbers.
-    let right = rect.left() + rect.width() * columns(both).first().copied().unwrap_or(1.0) - NUMBER;
-    let names = Rect::from_min_max(Pos2::new(left, rect.top()), Pos2::new(right, rect.bottom()));
-    let mut job = egui::text::LayoutJob::simple_singleline(
-        row.title(both),
-        FontId::proportional(11.5),
-        color,
-    );
-    job.wrap = egui::text::TextWrapping::truncate_at_width(names.width());
-    let galley = ui.painter().layout_job(job);
-    let at = Align2::LEFT_CENTER
-        .anchor_size(names.left_center(), galley.size())
-        .min;
-    ui.painter().galley(at, galley, color);
-    for (x, text) in columns(both).iter().zip(&row.cells) {
-        put(ui, rect, *x, text, color);
-    }
-    response
-}
-
-fn memory(ui: &mut Ui, list: &[(String, u64)], scene: u64) {
-    let mib = |b: u64| format!("{:.2} MiB", b as f64 / 1_048_576.0);
-    let total: u64 = list.iter().map(|m| m.1).sum();
-    let title = format!("Memory of A: {}, scene {}", mib(total), mib(scene));
-    egui::CollapsingHeader::new(title)
-        .id_salt("memory")
-        .default_open(true)
-        .show(ui, |ui| {
-            let most = list.first().map_or(1, |m| m.1.max(1));
-            for (name, bytes) in list {
-                let (rect, _) =
-                    ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
-                if !ui.is_rect_visible(rect) {
-                    continue;
+            let about =
+                "CPU and GPU timeline for Perfetto or chrome://tracing, as a file in captures/";
+            if button(ui, "Export trace", about) {
+                self.export_trace();
+            }
+        });
+        let times = &mut self.tabs.times;
+        ui.horizontal(|ui| match &times.held {
+            None => {
+                let of = if times.table.both { "A and B, " } else { "" };
+                ui.label(format!("{of}last {} frames, ms", times.table.frames))
+                    .on_hover_text("Click a frame in the graph to show its times");
+            }
+            Some(held) => {
+                let number = held.number;
+                ui.label(format!("frame {} is held, ms", number + 1));
+                if ui.button("Show means").clicked() {
+                    times.hold(number);
                 }
-                let part = (*bytes as f32 / most as f32).max(0.002);
-                let bar = Rect::from_min_size(rect.min, Vec2::new(rect.width() * part, ROW - 2.0));
-                ui.painter().rect_filled(
-                    bar,
-                    1.0,
-                    ui.visuals()
-                        .faint_bg_color
-                        .lerp_to_gamma(Color32::from_rgb(60, 90, 140), 0.6),
-                );
-                let color = ui.visuals().text_color();
-                let font = FontId::proportional(12.0);
-                ui.painter().text(
-                    rect.left_center() + Vec2::new(3.0, 0.0),
-                    Align2::LEFT_CENTER,
-                    name,
-                    font,
-                    color,
-                );
-                put(ui, rect, 1.0, &mib(*bytes), color);
             }
         });
+    }
+
+    fn frame_graphs(&mut self, ui: &mut Ui, both: bool, done: &mut Done) {
+        let times = &mut self.tabs.times;
+        let shown = times.frozen.as_deref().unwrap_or(&times.sides);
+        let sides = usize::from(both);
+        // One scale for both sides.
+        let p95 = shown[..=sides].iter().map(|s| s.level().1);
+        let top = chart::top(p95.fold(0.0, f64::max));
+        for (side, history) in shown.iter().enumerate().take(sides + 1) {
+            let look = Look {
+                side,
+                height: CHART[sides],
+                top,
+                held: times.held.as_ref().map(|h| h.number),
+                hovered: times.hovered.as_deref(),
+            };
+            let (response, pointed) = times.charts[side].show(ui, history, &look);
+            let Some(pointed) = pointed else {
+                continue;
+            };
+            let frame = history.at(pointed.frame);
+            let ms = frame.map_or(0.0, |f| f.times.gpu_ms);
+            if response.clicked() {
+                done.frame = Some(pointed.frame);
+            }
+            let pass = pointed.pass.as_deref().unwrap_or_default();
+            response.on_hover_text_at_pointer(format!(
+                "frame {}: {} ms\n{pass}\nClick to hold the frame",
+                pointed.frame + 1,
+                table::digits(ms)
+            ));
+            done.hovered = pointed.pass.or(done.hovered.take());
+        }
+        ui.add_space(4.0);
+    }
+
+    /// The stages and passes, in their order, with the details of the selected pass.
+    fn rows(&self, ui: &mut Ui, grid: &Grid, done: &mut Done) {
+        let times = &self.tabs.times;
+        let (table, first) = (&times.table, grid.columns.first());
+        let value = |row: &Row| first.and_then(|c| c.value(row, table)).unwrap_or(0.0);
+        let rows = || table.stages.iter().map(|s| &s.row);
+        let most = rows().map(value).fold(0.0, f64::max);
+        let is = |name: &Option<String>, row: &Row| name.as_deref() == Some(row.name.as_str());
+        let draw = |ui: &mut Ui, row: &Row, kind: Kind| {
+            let pass = matches!(kind, Kind::Pass { .. });
+            let line = Line {
+                row,
+                kind,
+                highlighted: pass && is(&times.hovered, row),
+                selected: pass && is(&times.selected, row),
+                most,
+            };
+            grid.line(ui, table, &line)
+        };
+        let mut pass = |ui: &mut Ui, row: &Row, inner: bool| {
+            let response = draw(ui, row, Kind::Pass { inner });
+            if response.clicked() {
+                done.pass = Some(row.name.clone());
+            }
+            if response.hovered() {
+                done.hovered = Some(row.name.clone());
+                response.on_hover_text_at_pointer(self.pass_text(row));
+            }
+            if is(&times.selected, row) {
+                done.wish = self.pass_details(ui, row);
+            }
+        };
+        for n in times.sort.order(rows(), table) {
+            let stage = &table.stages[n];
+            if stage.passes.is_empty() {
+                pass(ui, &stage.row, false);
+                continue;
+            }
+            let open = !times.folded.contains(&stage.row.name);
+            if draw(ui, &stage.row, Kind::Stage { open }).clicked() {
+                done.stage = Some(stage.row.name.clone());
+            }
+            for n in times.sort.order(stage.passes.iter(), table) {
+                if open {
+                    pass(ui, &stage.passes[n], true);
+                }
+            }
+        }
+        draw(ui, &table.between, Kind::Rest).on_hover_text_at_pointer(
+            "GPU time of the frame that no pass takes. Barriers count to the pass before which they are",
+        );
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+impl Times {
+    fn done(&mut self, done: Done) {
+        self.hovered = done.hovered;
+        self.sort = done.sort.unwrap_or(self.sort);
+        if let Some(number) = done.frame {
+            self.hold(number);
+        }
+        if let Some(stage) = done.stage.filter(|stage| !self.folded.remove(stage)) {
+            self.folded.insert(stage);
+        }
+        if let Some(pass) = done.pass {
+            self.selected = (self.selected.as_ref() != Some(&pass)).then_some(pass);
+        }
+    }
 
-    #[test]
-    fn a_file_is_never_overwritten() {
-        let folder = tempfile::tempdir().unwrap();
-        let first = write_free(folder.path(), "times-a b/c", "csv", b"1").unwrap();
-        let second = write_free(folder.path(), "times-a b/c", "csv", b"2").unwrap();
-        assert_eq!(first, folder.path().join("captures/times-a_b_c.csv"));
-        assert_eq!(second, folder.path().join("captures/times-a_b_c-2.csv"));
-        assert_eq!(
-            (
-                std::fs::read(first).unwrap(),
-                std::fs::read(second).unwrap()
-            ),
-            (b"1".to_vec(), b"2".to_vec())
+    fn memory(&self, ui: &mut Ui, grid: &Grid) {
+        let mib = |b: u64| format!("{:.2} MiB", b as f64 / 1_048_576.0);
+        let total: u64 = self.memory.iter().map(|m| m.1).sum();
+        let title = format!(
+            "Memory of A: {}, scene {}",
+            mib(total),
+            mib(self.scene_bytes)
         );
+        egui::CollapsingHeader::new(title)
+            .id_salt("memory")
+            .default_open(true)
+            .show(ui, |ui| {
+                let most = self.memory.first().map_or(1, |m| m.1.max(1));
+                for (name, bytes) in &self.memory {
+                    grid.bar(ui, name, mib(*bytes), *bytes as f32 / most as f32);
+                }
+            });
     }
 }
