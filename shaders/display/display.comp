@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Applies exposure, tone map and encoding: linear radiance to the 8-bit image.
 #include "params.glsl"
+#include "modules/tone_map.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -10,13 +11,6 @@ uniform writeonly image2D display;
 
 // Counts pixels with NaN or infinity, which the 8-bit image would hide.
 layout(std430) buffer PictureErrors { uint not_finite; } pictureErrors;
-
-vec3 toneMap(vec3 c) {
-    if (params.tone_map == TONE_MAP_REINHARD) return c / (c + 1.0); // thesis, Algorithm 3
-    if (params.tone_map == TONE_MAP_ACES) // Narkowicz 2015
-        return clamp(c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14), 0.0, 1.0);
-    return clamp(c, 0.0, 1.0);
-}
 
 vec3 encode(vec3 c) {
     if (params.gamma22 != 0) return pow(c, vec3(1.0 / 2.2)); // thesis, Algorithm 3
