@@ -79,7 +79,7 @@ fn the_panel_begins_with_what_the_graph_pins_and_finds_names_however_they_are_wr
     driver.keys(&[CONTROL, u32::from(b'f')]);
     driver.text("zzz");
     driver.texts_until("that nothing matches", |texts| {
-        has(texts, "nothing matches")
+        has(texts, "Nothing matches")
     });
     driver.click("Button", "clear the search");
     driver.texts_until("everything", |texts| has(texts, "Cone count"));
@@ -380,6 +380,8 @@ fn a_new_sky_keeps_its_own_tint() {
         let texels = image::Rgb32FImage::from_pixel(8, 4, image::Rgb([0.2, 0.4, 0.6]));
         texels.save(driver.home.path().join("own.hdr")).unwrap();
         driver.click("", "Scene");
+        let tab = centre(driver.find("", "Camera"));
+        driver.scroll_down((tab.0, tab.1 + 60.0));
         driver.click("TextInput", "picture of the sky");
         driver.text("own.hdr");
         let mark = driver.now();
@@ -481,7 +483,7 @@ fn frames_are_frozen_and_held() {
     // The newest frame is at the right edge of the bars.
     let chart = driver.find("", "A, frames");
     let (_, y) = centre(chart);
-    driver.click_at((chart[0] + 0.79 * (chart[2] - chart[0]), y));
+    driver.click_at((chart[0] + 0.77 * (chart[2] - chart[0]), y));
     let held = |t: &String| t.starts_with("frame ") && t.ends_with(" is held, ms");
     driver.texts_until("the held frame", |texts| texts.iter().any(held));
     driver.click("", "Show means");
@@ -490,6 +492,7 @@ fn frames_are_frozen_and_held() {
     });
 
     // The driver's statistics, or why there are none.
+    driver.grow_lower_tabs();
     let mark = driver.now();
     driver.click("Button", "shadow map");
     driver.click("Button", "Pipeline statistics");

@@ -238,10 +238,7 @@ fn agx_is_its_formula() {
     agrees("agx", 2e-5, agx);
     // Middle grey is half of the encoded range, black and white are its ends. Rows of the published inset add
     // up to 1 within 1.7e-4.
-    let found = shaded(
-        "agx",
-        &[[0.18; 3], [0.0; 3], [1000.0; 3], [10.0, 0.0, 0.0]],
-    );
+    let found = shaded("agx", &[[0.18; 3], [0.0; 3], [1000.0; 3], [10.0, 0.0, 0.0]]);
     let half = 0.5_f32.powf(2.2);
     for (found, expected) in found.iter().zip([half, 0.0, 1.0]) {
         assert!(

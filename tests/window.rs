@@ -676,6 +676,7 @@ fn what_was_saved_is_there_after_a_restart_and_captures_replay() {
     let brighter = driver.resting(0);
 
     // A file that exists is not replaced by the first click.
+    driver.grow_lower_tabs();
     driver.click("", "Save");
     let before = driver.file("configs/opened.ron");
     let mark = driver.now();
@@ -766,6 +767,7 @@ fn the_camera_follows_a_path_and_the_tabs_show_what_they_are_for() {
     let mark = driver.now();
     driver.click_at((x, y + 20.0));
     driver.other_picture(mark, 0, &turned);
+    driver.click("", "Probe: show tables");
     driver.texts_until("the table of samples", |texts| {
         texts.iter().any(|t| t.contains("Cone samples"))
     });

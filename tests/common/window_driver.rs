@@ -508,6 +508,22 @@ impl WindowDriver {
         self.fake(5, 1, to);
     }
 
+    /// Gives the lower of the two stacks of tabs most of the height.
+    pub fn grow_lower_tabs(&mut self) {
+        let [left, top, ..] = self.find("", "Chart");
+        // The gap above the lower stack.
+        self.drag((left, top - 2.0), (left, 150.0));
+    }
+
+    /// Scrolls the panel at a point to its end.
+    pub fn scroll_down(&self, at: (f64, f64)) {
+        self.fake(6, 0, at);
+        for _ in 0..30 {
+            self.fake(4, 5, at);
+            self.fake(5, 5, at);
+        }
+    }
+
     /// Turns the wheel up by so many notches, while keys are held.
     pub fn wheel(&self, at: (f64, f64), notches: usize, held: &[u32]) {
         let key = |kind: u8, symbol: &u32| {
