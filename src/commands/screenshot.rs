@@ -26,6 +26,12 @@ pub struct ScreenshotArgs {
     /// Pixels a point.
     #[arg(long, default_value_t = 1.0)]
     scale: f32,
+    /// Theme of the interface: dark or light.
+    #[arg(long, value_name = "THEME", default_value = "dark", value_parser = ["dark", "light"])]
+    theme: String,
+    /// Write the texts of the picture to this file (JSON): size in points, colour, place in pixels.
+    #[arg(long, value_name = "FILE")]
+    texts: Option<PathBuf>,
     /// Click on the widget with this label, or at X,Y; may be given many times.
     #[arg(long, value_name = "LABEL")]
     click: Vec<String>,
@@ -78,6 +84,11 @@ fn script(args: &ScreenshotArgs) -> Result<Script, LabError> {
                 .every
                 .map(|ms| Duration::from_secs_f64(ms.clamp(0.1, 1e4) / 1e3)),
         }),
+        theme: Some(match args.theme.as_str() {
+            "light" => egui::Theme::Light,
+            _ => egui::Theme::Dark,
+        }),
+        texts: args.texts.is_some(),
         edit: args.edit.clone().map(|file| Edit {
             file,
             from: args.from.clone().unwrap_or_default(),
@@ -134,6 +145,11 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
     )
     .map_err(LabError::making("the picture"))?;
     crate::files::write_whole(&args.output, file.get_ref())?;
+    if let Some(path) = &args.texts {
+        let texts = serde_json::to_vec_pretty(&shot.texts);
+        let texts = texts.map_err(LabError::making("the list of texts"))?;
+        crate::files::write_whole(path, &texts)?;
+    }
     if args.measure > 0 || shot.pace.is_some() || shot.edit_ms.is_some() {
         print_times(&shot, args.measure > 0);
     }

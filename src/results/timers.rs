@@ -126,7 +126,7 @@ pub fn draw(painter: &Painter, picture: Rect, right: bool, timers: &Timers, long
     };
     let panel = Rect::from_min_size(corner, size);
     let painter = painter.with_clip_rect(panel.intersect(painter.clip_rect()));
-    painter.rect_filled(panel, 0.0, Color32::from_black_alpha(176));
+    painter.rect_filled(panel, 0.0, Color32::from_black_alpha(225));
     let inner = panel.shrink(MARGIN);
     let line = |n: f32| {
         let size = Vec2::new(inner.width(), LINE);
@@ -156,7 +156,7 @@ pub fn draw(painter: &Painter, picture: Rect, right: bool, timers: &Timers, long
         };
         let size = Vec2::new(at.width() * part, LINE - 2.0);
         let bar = Rect::from_min_size(at.min + Vec2::new(0.0, 1.0), size);
-        let fill = color(name.trim_end_matches(SKIPPED)).gamma_multiply(0.55);
+        let fill = color(name.trim_end_matches(SKIPPED)).gamma_multiply(0.45);
         painter.rect_filled(bar, 1.0, fill);
         let names = Rect::from_min_max(at.min, Pos2::new(at.right() - 50.0, at.bottom()));
         let clipped = painter.with_clip_rect(names.intersect(painter.clip_rect()));

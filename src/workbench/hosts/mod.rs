@@ -1,4 +1,5 @@
 //! Hosts of the interface: a window, and screenshots without one.
 
 pub mod screenshot;
+pub mod texts;
 pub mod window;

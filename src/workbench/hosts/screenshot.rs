@@ -2,6 +2,7 @@
 //! interface as the window's, for pictures in documents and for measuring what the interface itself
 //! costs.
 
+use super::texts::{Text, texts};
 use crate::files::FileError;
 use crate::lab::LabError;
 use crate::results::stats::{Spread, spread};
@@ -21,6 +22,10 @@ pub struct Script {
     pub size: (u32, u32),
     /// Pixels a point.
     pub scale: f32,
+    /// The theme; dark when absent.
+    pub theme: Option<egui::Theme>,
+    /// Whether the texts of the picture are listed.
+    pub texts: bool,
     /// Labels of widgets to click on, one after the other; `X,Y` clicks at a point of the
     /// interface.
     pub clicks: Vec<String>,
@@ -93,6 +98,8 @@ pub struct Shot {
     pub copy_ms: Spread,
     /// How the interface kept pace.
     pub pace: Option<Kept>,
+    /// The texts of the picture.
+    pub texts: Vec<Text>,
 }
 
 struct Host {
@@ -104,6 +111,8 @@ struct Host {
     script: Script,
     start: Instant,
     woken: Receiver<()>,
+    /// The texts of the last frame.
+    texts: Vec<Text>,
 }
 
 /// Opens the workbench offscreen, follows the script and takes the picture.
@@ -121,6 +130,7 @@ pub fn take(options: Options, gpu: &GpuOptions, script: Script) -> Result<Shot, 
     workbench.paints_on(gpu.info.id);
     let context = egui::Context::default();
     theme::install(&context);
+    context.set_theme(script.theme.unwrap_or(egui::Theme::Dark));
     context.enable_accesskit();
     let start = Instant::now();
     let mut host = Host {
@@ -132,6 +142,7 @@ pub fn take(options: Options, gpu: &GpuOptions, script: Script) -> Result<Shot, 
         script,
         start,
         woken,
+        texts: Vec::new(),
     };
     let shot = host.run();
     let Host {
@@ -190,6 +201,7 @@ impl Host {
             gpu_ms: spread(gpu),
             copy_ms: spread(copies),
             pace,
+            texts: std::mem::take(&mut self.texts),
         })
     }
 
@@ -371,6 +383,9 @@ impl Host {
         let output = self.context.run_ui(input, |ui| workbench.ui(ui, textures));
         if let Some(update) = output.platform_output.accesskit_update {
             self.nodes = update.nodes.into_iter().collect();
+        }
+        if self.script.texts {
+            self.texts = texts(&output.shapes, scale);
         }
         let primitives = self
             .context

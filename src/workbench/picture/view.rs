@@ -301,6 +301,6 @@ fn badge(painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str) {
     let galley =
         painter.layout_no_wrap(text.to_string(), FontId::proportional(13.0), Color32::WHITE);
     let rect = anchor.anchor_size(at, galley.size() + Vec2::new(8.0, 2.0));
-    painter.rect_filled(rect, 3.0, Color32::from_black_alpha(190));
+    painter.rect_filled(rect, 3.0, Color32::from_black_alpha(225));
     painter.galley(rect.min + Vec2::new(4.0, 1.0), galley, Color32::WHITE);
 }

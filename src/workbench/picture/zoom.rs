@@ -105,7 +105,7 @@ pub fn foot(painter: &egui::Painter, area: Rect, text: String) {
     let galley = painter.layout_no_wrap(text, FontId::monospace(13.0), Color32::WHITE);
     let rect =
         Align2::LEFT_BOTTOM.anchor_size(area.left_bottom(), galley.size() + Vec2::splat(6.0));
-    painter.rect_filled(rect, 2.0, Color32::from_black_alpha(190));
+    painter.rect_filled(rect, 2.0, Color32::from_black_alpha(225));
     painter.galley(rect.min + Vec2::splat(3.0), galley, Color32::WHITE);
 }
 

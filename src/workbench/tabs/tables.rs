@@ -299,7 +299,7 @@ impl Workbench {
             }
         };
         builder.header(20.0, head).body(|body| {
-            body.rows(16.0, rows.shown.len(), |mut row| {
+            body.rows(18.0, rows.shown.len(), |mut row| {
                 let Some(cells) = rows.shown.get(row.index()).and_then(|i| rows.cells.get(*i))
                 else {
                     return;
@@ -316,7 +316,7 @@ impl Workbench {
                                 rect.left_center(),
                                 Align2::LEFT_CENTER,
                                 text,
-                                FontId::monospace(11.0),
+                                FontId::monospace(12.0),
                                 color,
                             );
                         }

@@ -2,7 +2,7 @@
 
 use super::statistics::BINS;
 use super::work::Done;
-use egui::{Align2, Color32, FontId, Pos2, Sense, Shape, Stroke, Ui, Vec2};
+use egui::{Align2, Color32, Pos2, Sense, Shape, Stroke, Ui, Vec2};
 
 const COLORS: [Color32; 4] = [
     Color32::from_rgb(235, 80, 70),
@@ -35,7 +35,7 @@ pub fn show(ui: &mut Ui, done: &Done) {
         painter.add(Shape::line(points, Stroke::new(1.0, color)));
     }
     let weak = ui.visuals().weak_text_color();
-    let font = FontId::proportional(10.0);
+    let font = egui::TextStyle::Small.resolve(ui.style());
     let (low, high) = (
         done.tone.low.min(done.tone.high),
         done.tone.low.max(done.tone.high),
@@ -43,7 +43,7 @@ pub fn show(ui: &mut Ui, done: &Done) {
     painter.text(
         rect.left_top() + Vec2::new(2.0, 0.0),
         Align2::LEFT_TOP,
-        format!("most {most}"),
+        format!("peak {most} texels"),
         font,
         weak,
     );

@@ -3,6 +3,7 @@
 
 use super::{INSPECTOR, Workbench, image};
 use crate::workbench::picture::view;
+use crate::workbench::theme;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2};
 
 /// Pan and zoom over the texture.
@@ -73,7 +74,7 @@ impl Workbench {
         let area = response.rect;
         let scale = ui.ctx().pixels_per_point();
         self.read_texture();
-        painter.rect_filled(area, 0.0, ui.visuals().extreme_bg_color);
+        painter.rect_filled(area, 0.0, theme::roles(ui).ground);
         let Some(done) = &self.tabs.inspector.shown else {
             return;
         };
@@ -173,7 +174,7 @@ fn note(painter: &egui::Painter, area: Rect, at: Pos2, text: &str) {
     let size = galley.size() + Vec2::splat(8.0);
     let most = (area.max - size).max(area.min);
     let rect = Rect::from_min_size(at.clamp(area.min, most), size);
-    painter.rect_filled(rect, 3.0, Color32::from_black_alpha(190));
+    painter.rect_filled(rect, 3.0, Color32::from_black_alpha(225));
     painter.galley(
         Align2::LEFT_TOP
             .anchor_size(rect.min + Vec2::splat(4.0), galley.size())
