@@ -90,7 +90,7 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
 
     // 256 samples take long on a software device: it is stopped, and the blocks of 32 that there are by then are kept.
     let mark = driver.now();
-    driver.click("Button", "gather the reference");
+    driver.click("Button", "Render reference");
     driver.event(mark, "gathering");
     driver.wait_at_most(Duration::from_secs(300), mark, "a block", |e| {
         e["event"] == "gathers" && e["samples"].as_u64().is_some_and(|n| n >= 32)
@@ -199,7 +199,7 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     });
     driver.resting(0);
     let mark = driver.now();
-    driver.click("Button", "as the panel");
+    driver.click("Button", "Fit to viewport");
     let large = driver.wait(mark, "a larger picture", |e| {
         e["event"] == "picture" && e["size"][0].as_f64() > Some(160.0)
     });

@@ -292,7 +292,7 @@ fn scenes_that_are_not_on_the_machine_fail_alone() {
         ["failed", "done"]
     );
     assert!(
-        rows[0]["error"].contains("model file 'nowhere/gone.obj' is in none of"),
+        rows[0]["error"].contains("model 'nowhere/gone.obj' not found; looked in"),
         "{:?}",
         rows[0]
     );

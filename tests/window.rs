@@ -289,7 +289,7 @@ fn a_and_b_are_told_apart_on_the_screen_and_in_numbers() {
     let mark = driver.now();
     driver.click("", "A | B");
     driver.picture(mark, 1, &first);
-    for mode in ["difference", "FLIP"] {
+    for mode in ["difference", "FLIP error"] {
         let mark = driver.now();
         driver.click("", mode);
         let compared = driver.wait(mark, mode, |e| {
@@ -322,7 +322,7 @@ fn a_and_b_are_told_apart_on_the_screen_and_in_numbers() {
     assert_eq!(driver.resting(0), first, "A stays as it is");
 
     // Whole pictures by flipping; halves by the line, which follows the mouse.
-    driver.click("", "flip");
+    driver.click("", "toggle");
     driver.keys(&[u32::from(b'x')]);
     driver.find("", "showing B (press X)");
     let b = driver.still_screenshot();
@@ -348,7 +348,7 @@ fn a_and_b_are_told_apart_on_the_screen_and_in_numbers() {
     driver.picture(mark, 0, &other);
 
     // A comparison that the graph offers.
-    driver.click("", "FLIP");
+    driver.click("", "FLIP error");
     let mark = driver.now();
     driver.click("", "Compare");
     driver.click("", "raster | tessellated");
@@ -358,7 +358,7 @@ fn a_and_b_are_told_apart_on_the_screen_and_in_numbers() {
         e["event"] == "compared" && number(e, "mean") > 0.0
     });
     driver.click("", "A | B");
-    driver.texts_until("A alone", |texts| !texts.iter().any(|t| t == "FLIP"));
+    driver.texts_until("A alone", |texts| !texts.iter().any(|t| t == "FLIP error"));
     driver.shows(&other);
     driver.close();
 }
@@ -373,7 +373,7 @@ fn files_are_opened_by_a_dialog_cameras_and_comparisons_are_kept() {
     driver.click("", "Scene");
     driver.click("TextInput", "camera name");
     driver.text("corner");
-    driver.click("Button", "keep camera");
+    driver.click("Button", "add bookmark");
     driver.find("Button", "corner");
     assert!(
         driver
@@ -684,7 +684,7 @@ fn what_was_saved_is_there_after_a_restart_and_captures_replay() {
     driver.event(mark, "not saved");
     assert_eq!(driver.file("configs/opened.ron"), before);
     let mark = driver.now();
-    driver.click("Button", "replace it");
+    driver.click("Button", "Overwrite");
     driver.event(mark, "saved");
     let saved = driver.file("configs/opened.ron");
     assert!(
@@ -860,7 +860,7 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     driver.text("smoo");
     driver.click("Button", "find pass smooth");
     let mark = driver.now();
-    driver.click("Button", "with | without");
+    driver.click("Button", "Compare with/without");
     driver.wait(mark, "B built", |e| e["event"] == "built" && e["side"] == 1);
     let rough = driver.other_picture(mark, 1, &first);
     assert_ne!(rough, dark);
@@ -868,7 +868,7 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
         !texts.iter().any(|t| t.contains("is zeros now"))
     });
     driver.click("", "A | B");
-    driver.texts_until("A alone", |texts| !texts.iter().any(|t| t == "FLIP"));
+    driver.texts_until("A alone", |texts| !texts.iter().any(|t| t == "FLIP error"));
     driver.click("", "Nodes");
     driver.click("Button", "Fit graph");
 

@@ -93,12 +93,7 @@ const KEYS: [Shortcut; 19] = [
         Key::X,
         "A or B, when comparing by flipping",
     ),
-    key(
-        Action::Unpoint,
-        NONE,
-        Key::Escape,
-        "forget the point clicked on",
-    ),
+    key(Action::Unpoint, NONE, Key::Escape, "clear the probe"),
     key(Action::Play, NONE, Key::Space, "play and pause time"),
     key(Action::Step, NONE, Key::Period, "one frame on"),
     key(
@@ -110,20 +105,17 @@ const KEYS: [Shortcut; 19] = [
 ];
 
 const MOUSE: [(&str, &str); 8] = [
-    ("drag", "turn around the target, or look around when flying"),
+    ("drag", "orbit the target, or look around when flying"),
     ("right drag", "look around"),
-    ("middle drag", "move sideways"),
-    ("wheel", "nearer and farther"),
+    ("middle drag", "pan"),
+    ("wheel", "zoom in and out (dolly)"),
     ("Ctrl wheel", "zoom into the picture; the camera stays"),
     (
         "Ctrl drag",
         "move the picture when zoomed; a double click shows all of it",
     ),
     ("W A S D Q E", "move; with Shift faster"),
-    (
-        "click",
-        "the graph's view of that point, for example the cones of its pixel",
-    ),
+    ("click", "probe a pixel, for example to draw its cones"),
 ];
 
 const BUTTONS: [(&str, &str); 5] = [

@@ -332,10 +332,10 @@ impl Workbench {
 
     fn waiting_text(&self) -> String {
         match &self.scene.loading {
-            Some((what, part)) => format!("loading {what}: {:.0} %", 100.0 * part),
-            None if self.scene.missing => "no scene".into(),
-            None if self.device.is_none() => "opening the device".into(),
-            None => "building the passes".into(),
+            Some((what, part)) => format!("Loading {what}: {:.0} %", 100.0 * part),
+            None if self.scene.missing => "No scene".into(),
+            None if self.device.is_none() => "Opening the device".into(),
+            None => "Compiling passes".into(),
         }
     }
 

@@ -38,18 +38,18 @@ impl Workbench {
             let since = picture.map_or(self.sent.at, |p| p.finished.max(self.sent.at));
             match (&self.sides[side].info, picture) {
                 (Some(_), Some(p)) if !p.preview && p.request >= self.sent.number => None,
-                (None, _) => Some((format!("building the passes of {name}"), since)),
+                (None, _) => Some((format!("Compiling passes of {name}"), since)),
                 (_, Some(p)) if p.preview => {
-                    Some((format!("building the passes of {name}"), self.sent.at))
+                    Some((format!("Compiling passes of {name}"), self.sent.at))
                 }
-                _ => Some((format!("working on {name}"), since)),
+                _ => Some((format!("Rendering {name}"), since)),
             }
         };
         let comparing = || {
             self.comparison
                 .work
                 .is_working()
-                .then(|| ("comparing A and B".into(), self.sent.at))
+                .then(|| ("Comparing A and B".into(), self.sent.at))
         };
         // Light that gathers over frames goes on after the first picture.
         let pictures = || self.sides.iter().filter_map(|s| s.picture.as_ref());
@@ -62,7 +62,7 @@ impl Workbench {
         let converging = || {
             finished.map(|since| {
                 (
-                    format!("converging, frame {} of {}", frame.0, frame.1),
+                    format!("Converging, frame {} of {}", frame.0, frame.1),
                     since,
                 )
             })

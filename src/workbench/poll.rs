@@ -144,8 +144,10 @@ impl Workbench {
             resized,
         } = built.change;
         let (side, ms) = (built.side, built.ms);
-        self.messages.status =
-            format!("kept {kept}, rebuilt {rebuilt}, resized {resized}, {ms:.0} ms");
+        self.messages.status = format!(
+            "Rebuilt {rebuilt} of {} pipelines in {ms:.0} ms",
+            kept + rebuilt
+        );
         self.event(
             "built",
             json!({ "side": side, "kept": kept, "rebuilt": rebuilt, "resized": resized, "build_ms": ms,

@@ -196,7 +196,7 @@ fn load_model(
         let (line, column) = position_of(text, file);
         let tried: Vec<String> = candidates.iter().map(|c| c.display().to_string()).collect();
         let message = format!(
-            "model file '{file}' is in none of: {}. Correct the path, or set CONELAB_SCENES to the folder that holds it",
+            "model '{file}' not found; looked in: {}. Correct the path, or set CONELAB_SCENES to the folder that holds it",
             tried.join(", ")
         );
         return Err(SceneError::NoModel {

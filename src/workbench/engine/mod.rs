@@ -129,11 +129,11 @@ impl Engine {
             let said = ended
                 .and_then(Result::err)
                 .map_or(String::new(), |p| format!(": {}", said(p.as_ref())));
-            return Some(format!("the engine ended by a fault in the program{said}"));
+            return Some(format!("the renderer crashed{said}"));
         }
         let silent = self.pulse.silent()?;
         Some(format!(
-            "the engine has not answered for {:.0} s: the driver stands still",
+            "the renderer has not answered for {:.0} s: the driver is not responding",
             silent.as_secs_f64()
         ))
     }

@@ -24,10 +24,10 @@ pub enum Mode {
 /// Names of the modes.
 pub const MODES: [(Mode, &str); 5] = [
     (Mode::Split, "split"),
-    (Mode::Flip, "flip"),
+    (Mode::Flip, "toggle"),
     (Mode::Side, "side by side"),
     (Mode::Difference, "difference"),
-    (Mode::Perceived, "FLIP"),
+    (Mode::Perceived, "FLIP error"),
 ];
 
 /// A picture to compare: 8-bit RGBA.

@@ -51,7 +51,7 @@ impl Bookmarks {
             named(&field, WidgetType::TextEdit, "camera name");
             let enter = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             let is_named = !self.name.trim().is_empty();
-            let button = ui.add_enabled(is_named, egui::Button::new("keep camera").small());
+            let button = ui.add_enabled(is_named, egui::Button::new("add bookmark").small());
             let button = button.on_hover_text("Keeps this camera in captures/cameras");
             if button.clicked() || enter && is_named {
                 asked = Some(Asked::Keep);

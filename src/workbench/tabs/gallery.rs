@@ -69,7 +69,7 @@ impl Workbench {
         let gallery = &mut self.tabs.gallery;
         let again = gallery.taken.is_some();
         let text = match (again, self.desired.sides[1].is_some()) {
-            (true, _) => "replace it",
+            (true, _) => "Overwrite",
             (false, false) => "save",
             // The side of the shown parameters.
             (false, true) => ["save A", "save B"][self.panel.side.min(1)],
@@ -91,7 +91,7 @@ impl Workbench {
         let gallery = &self.tabs.gallery;
         match &gallery.taken {
             Some(taken) => drop(ui.weak(format!(
-                "configs/{taken}.ron exists; replacing keeps its comments"
+                "configs/{taken}.ron exists. Overwriting keeps its comments"
             ))),
             None => said(ui, gallery.saved.as_ref()),
         }

@@ -66,7 +66,7 @@ impl Workbench {
             named(&field, egui::WidgetType::TextEdit, "path name");
             paths.taken &= !field.changed();
             let text = match paths.taken {
-                true => "replace it",
+                true => "Overwrite",
                 false => "save path",
             };
             let save = ui.add_enabled(!paths.path.keys.is_empty(), egui::Button::new(text));

@@ -187,7 +187,7 @@ impl Sequence {
                 let frames = DragValue::new(&mut self.frames).range(1..=100_000);
                 spin(ui, frames.suffix(" frames"), "frames of the sequence");
                 let rate = DragValue::new(&mut self.rate).range(1.0..=240.0);
-                spin(ui, rate.suffix(" a second"), "frames a second");
+                spin(ui, rate.suffix(" fps"), "frame rate");
             });
             ui.horizontal(|ui| {
                 let field = egui::TextEdit::singleline(&mut self.folder).desired_width(160.0);

@@ -5,10 +5,10 @@ use super::bookmarks::Bookmarks;
 use crate::lab::Viewpoint;
 use crate::scene::Light;
 use crate::scene::light::Quantity;
-use crate::workbench::Workbench;
 use crate::workbench::desired::request::LightState;
 use crate::workbench::panel::control::spin;
 use crate::workbench::picture::motion;
+use crate::workbench::{Workbench, theme};
 use egui::{DragValue, RichText, TextureId, Ui};
 use glam::Vec3;
 
@@ -80,13 +80,13 @@ impl Workbench {
                         });
                     ui.separator();
                 }
-                ui.strong("Camera");
+                ui.label(theme::title("Camera"));
                 self.camera(ui);
                 ui.separator();
-                ui.strong("Clock");
+                ui.label(theme::title("Time"));
                 self.time(ui);
                 ui.separator();
-                ui.strong("Lights and sky");
+                ui.label(theme::title("Lights and sky"));
                 self.lights(ui);
             });
     }
@@ -98,13 +98,13 @@ impl Workbench {
                 motion::Mode::Orbit,
                 "orbit",
             )
-            .on_hover_text("Drag turns around the target, the wheel comes nearer");
+            .on_hover_text("Drag to orbit the target; use the wheel to zoom");
             ui.selectable_value(
                 &mut self.tabs.surroundings.steering,
                 motion::Mode::Fly,
                 "fly",
             )
-            .on_hover_text("Drag looks around, W A S D Q E move");
+            .on_hover_text("Drag to look around; W A S D Q E move");
             let speed = DragValue::new(&mut self.tabs.surroundings.speed)
                 .range(0.01..=100.0)
                 .speed(0.05)
@@ -118,13 +118,13 @@ impl Workbench {
             .map_or(Vec::new(), |s| s.cameras.keys().cloned().collect());
         if let Some(scene) = self.scene.loaded.clone() {
             ui.horizontal_wrapped(|ui| {
-                ui.label("views:");
+                ui.label("cameras:");
                 for name in &names {
                     if ui.small_button(name).clicked() {
                         self.desired.camera = scene.cameras.get(name).copied();
                     }
                 }
-                if ui.small_button("whole scene").clicked() {
+                if ui.small_button("frame all").clicked() {
                     self.desired.camera = Some(Viewpoint::around(&scene).camera);
                 }
             });
@@ -152,7 +152,7 @@ impl Workbench {
                 clock.playing = false;
                 clock.steps += 1;
             }
-            if ui.button("to start").clicked() {
+            if ui.button("rewind").clicked() {
                 clock.at = 0.0;
                 clock.jumps += 1;
             }
@@ -205,11 +205,11 @@ impl Workbench {
                 None => ui
                     .label("sky radiance")
                     .on_hover_text("Linear RGB, W/(m² sr)"),
-                Some(_) => ui.label("times the sky's picture"),
+                Some(_) => ui.label("sky tint").on_hover_text("Multiplies the HDRI"),
             };
         });
         if let Some(environment) = &scene.environment {
-            ui.label(format!("picture: {}", environment.name()));
+            ui.label(format!("HDRI: {}", environment.name()));
             ui.add(
                 egui::Slider::new(rotation, 0.0..=360.0)
                     .suffix(" deg")
@@ -252,7 +252,7 @@ impl Workbench {
             (*text, *of) = (shown[1].clone(), shown);
         }
         let asked = ui.horizontal(|ui| {
-            let field = egui::TextEdit::singleline(text).hint_text("sky.hdr or sky.exr");
+            let field = egui::TextEdit::singleline(text).hint_text("path to .hdr or .exr");
             let field = ui.add(field.desired_width(180.0));
             crate::workbench::panel::control::named(
                 &field,
@@ -262,7 +262,7 @@ impl Workbench {
             let done = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             let load = ui
                 .button("load")
-                .on_hover_text("A picture of the sky; empty: the scene's own");
+                .on_hover_text("Load an HDRI as the sky. Empty: the scene's own");
             (load.clicked() || done).then(|| text.trim().to_string())
         });
         let asked = asked.inner.filter(|file| *file != self.desired.environment);
@@ -316,7 +316,11 @@ fn one(ui: &mut Ui, light: &mut Light) {
         let slider = egui::Slider::new(&mut x, field.range())
             .suffix(format!(" {}", field.quantity.unit()))
             .logarithmic(field.quantity == Quantity::Length)
-            .text(field.name);
+            .text(match field.name {
+                "inner" => "inner cone angle",
+                "outer" => "outer cone angle",
+                name => name,
+            });
         ui.add(slider);
         if x != before {
             light.set_number(field, x);

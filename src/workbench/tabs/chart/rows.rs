@@ -122,7 +122,7 @@ impl Workbench {
                          errors are measured against. It takes minutes on a GPU and much longer without one, goes on \
                          beside the window, can be cancelled and is kept. The picture keeps its present size from then \
                          on: a reference fits no other";
-            let text = if missing { "gather the reference" } else { "gather more" };
+            let text = if missing { "Render reference" } else { "Refine reference" };
             start = ui.button(text).on_hover_text(about).clicked();
             let samples = DragValue::new(&mut self.tabs.chart.live.samples).range(32..=1 << 24).speed(32).suffix(" samples");
             spin(ui, samples, "samples of the reference")
@@ -154,7 +154,7 @@ impl Workbench {
             {
                 self.layout.fixed_size = Some(size);
             }
-            if self.layout.fixed_size.is_some() && ui.small_button("as the panel").clicked() {
+            if self.layout.fixed_size.is_some() && ui.small_button("Fit to viewport").clicked() {
                 self.layout.fixed_size = None;
             }
         });

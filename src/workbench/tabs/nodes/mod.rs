@@ -363,11 +363,11 @@ impl Workbench {
                 }
             }
             let about = "A with this pass, B without it, over the picture";
-            if ui.button("with | without").on_hover_text(about).clicked() {
+            if ui.button("Compare with/without").on_hover_text(about).clicked() {
                 self.with_and_without(side, name);
             }
             let about = "Only this pass and those that it needs; Inspect shows its first texture";
-            if ui.button("solo").on_hover_text(about).clicked() {
+            if ui.button("Isolate").on_hover_text(about).clicked() {
                 self.solo(side, info, name, off);
             }
         });
