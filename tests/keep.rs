@@ -1374,7 +1374,7 @@ fn times_are_drawn_into_a_corner_of_pictures_and_nowhere_else() {
     let timed = render("timed.png", &["--timers", "passes"]);
     assert_eq!(plain.dimensions(), timed.dimensions());
     // A line for the device, one for the size, the total, two passes.
-    let panel = |x: u32, y: u32| x < 226 && y < 5 * 14 + 12;
+    let panel = |x: u32, y: u32| x < 236 && y < 5 * 15 + 12;
     let differs = plain
         .enumerate_pixels()
         .filter(|(x, y, p)| timed.get_pixel(*x, *y) != *p);

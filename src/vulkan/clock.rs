@@ -16,10 +16,11 @@ pub enum ClockExtension {
 
 impl ClockExtension {
     pub(super) fn of(extensions: &[vk::ExtensionProperties]) -> ClockExtension {
-        if super::has(extensions, khr::calibrated_timestamps::NAME) {
-            ClockExtension::Khr
-        } else if super::has(extensions, ext::calibrated_timestamps::NAME) {
+        // Validation layers from before 2023 warn of the KHR name. The functions are the same.
+        if super::has(extensions, ext::calibrated_timestamps::NAME) {
             ClockExtension::Ext
+        } else if super::has(extensions, khr::calibrated_timestamps::NAME) {
+            ClockExtension::Khr
         } else {
             ClockExtension::None
         }

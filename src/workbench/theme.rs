@@ -56,7 +56,7 @@ const DARK: Roles = Roles {
     secondary: rgb(0xb9bfc8),
     selected: rgb(0x2a5a9c),
     on_selected: rgb(0xffffff),
-    accent: rgb(0x82b6ff),
+    accent: rgb(0x93c1ff),
     modified: rgb(0xffc454),
     error: rgb(0xff9488),
     good: rgb(0x86dc98),

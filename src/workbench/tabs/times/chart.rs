@@ -6,16 +6,22 @@ use crate::results::timers::color;
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Align2, Color32, Pos2, Rect, Response, Sense, Shape, TextStyle, Ui, Vec2};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// Height of a mark on a bar that is cut off, points.
 const CUT: f32 = 3.0;
 /// Width of the labels on the right, in characters.
 const LABELS: f32 = 9.0;
 
+/// Longest time that new frames wait for their bars: a mesh takes about a millisecond of the CPU.
+const AGE: Duration = Duration::from_millis(100);
+/// Parts of a bar lower than this are added to the next part, points.
+const LEAST: f64 = 1.0;
+
 /// A chart's mesh, kept while nothing changes.
 #[derive(Default)]
 pub struct Chart {
-    key: Option<Key>,
+    key: Option<(Key, Instant)>,
     mesh: Arc<Mesh>,
 }
 
@@ -27,6 +33,14 @@ struct Key {
     top: f64,
     hovered: Option<String>,
     cut: Color32,
+}
+
+impl Key {
+    /// Whether nothing but newer frames separates two charts.
+    fn differs_by_frames(&self, other: &Key) -> bool {
+        let view = |key: &Key| (key.rect, key.passes, key.hovered.clone(), key.cut);
+        view(self) == view(other)
+    }
 }
 
 /// How a chart is drawn.
@@ -80,9 +94,15 @@ impl Chart {
             hovered: look.hovered.map(str::to_string),
             cut,
         };
-        if self.key.as_ref() != Some(&key) {
-            self.mesh = Arc::new(mesh(bars, history, look.top, look.hovered, cut));
-            self.key = Some(key);
+        match &self.key {
+            Some((made, _)) if *made == key => {}
+            Some((made, at)) if made.differs_by_frames(&key) && at.elapsed() < AGE => {
+                ui.ctx().request_repaint_after(AGE);
+            }
+            _ => {
+                self.mesh = Arc::new(mesh(bars, history, look.top, look.hovered, cut));
+                self.key = Some((key, Instant::now()));
+            }
         }
         painter.add(Shape::Mesh(self.mesh.clone()));
         let (text, weak) = (ui.visuals().text_color(), ui.visuals().weak_text_color());
@@ -162,7 +182,7 @@ fn mesh(rect: Rect, history: &History, top: f64, hovered: Option<&str>, cut: Col
         for (pass, color) in history.passes.iter().zip(&colors) {
             high += frame.pass(pass.number) * scale;
             // Invisible parts cost no triangles: they are added to the next part.
-            if high - low < 0.4 {
+            if high - low < LEAST {
                 continue;
             }
             part(low, high, *color);
