@@ -58,7 +58,7 @@ const DARK: Roles = Roles {
     on_selected: rgb(0xffffff),
     accent: rgb(0x93c1ff),
     modified: rgb(0xffc454),
-    error: rgb(0xff9488),
+    error: rgb(0xffa79d),
     good: rgb(0x86dc98),
     hot: rgb(0x8c4228),
 };
@@ -71,7 +71,7 @@ const LIGHT: Roles = Roles {
     hovered: rgb(0xd0d5dc),
     line: rgb(0xc3c8d0),
     text: rgb(0x1b1f25),
-    secondary: rgb(0x3d444e),
+    secondary: rgb(0x363d47),
     selected: rgb(0xbcd6fb),
     on_selected: rgb(0x0c2a52),
     accent: rgb(0x0f4fa8),
