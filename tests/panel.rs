@@ -186,7 +186,7 @@ fn the_window_says_what_is_wrong_with_a_scene() {
     let mut driver = WindowDriver::open(CONES, &["--size", "160x120", "--scene", "gone.obj"]);
     driver.event(0, "load failed");
     driver.texts_until("that there is no scene", |texts| {
-        has(texts, "no scene") && has(texts, "scene: none")
+        has(texts, "No scene") && has(texts, "scene: none")
     });
     let mark = driver.now();
     driver.click("", "scene: none");

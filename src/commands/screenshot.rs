@@ -84,10 +84,7 @@ fn script(args: &ScreenshotArgs) -> Result<Script, LabError> {
                 .every
                 .map(|ms| Duration::from_secs_f64(ms.clamp(0.1, 1e4) / 1e3)),
         }),
-        theme: Some(match args.theme.as_str() {
-            "light" => egui::Theme::Light,
-            _ => egui::Theme::Dark,
-        }),
+        light: args.theme == "light",
         texts: args.texts.is_some(),
         edit: args.edit.clone().map(|file| Edit {
             file,

@@ -22,8 +22,8 @@ pub struct Script {
     pub size: (u32, u32),
     /// Pixels a point.
     pub scale: f32,
-    /// The theme; dark when absent.
-    pub theme: Option<egui::Theme>,
+    /// Whether the theme is light, and not dark.
+    pub light: bool,
     /// Whether the texts of the picture are listed.
     pub texts: bool,
     /// Labels of widgets to click on, one after the other; `X,Y` clicks at a point of the
@@ -130,7 +130,10 @@ pub fn take(options: Options, gpu: &GpuOptions, script: Script) -> Result<Shot, 
     workbench.paints_on(gpu.info.id);
     let context = egui::Context::default();
     theme::install(&context);
-    context.set_theme(script.theme.unwrap_or(egui::Theme::Dark));
+    context.set_theme(match script.light {
+        true => egui::Theme::Light,
+        false => egui::Theme::Dark,
+    });
     context.enable_accesskit();
     let start = Instant::now();
     let mut host = Host {
