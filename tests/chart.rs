@@ -81,6 +81,7 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     let mut driver = WindowDriver::open(SMALL, &["--size", "160x120"]);
     driver.first_picture();
     let mark = driver.now();
+    driver.grow_lower_tabs();
     driver.click("", "Chart");
     let measured = driver.event(mark, "error");
     assert!(
