@@ -73,7 +73,7 @@ impl Workbench {
         }
     }
 
-    /// What is shown, as icons; from right to left.
+    /// Icons of views and settings, from right to left.
     fn bar_right(&mut self, ui: &mut Ui) {
         if icon_button(ui, icons::QUESTION, "help", "Help (F1)", self.layout.help) {
             self.layout.help = !self.layout.help;
@@ -200,20 +200,24 @@ impl Workbench {
         let mut chosen = None;
         let menu = ui.menu_button("Compare", |ui| {
             for compare in &info.graph.compare {
-                let compared = self.comparison_sides(&info, &compare.value);
-                let is_it = self.desired.sides == compared;
+                let last = self.layout.compared.as_ref();
+                let is_it = last.is_some_and(|(title, sides)| {
+                    *title == compare.value.title && self.desired.sides == *sides
+                });
                 let row = ui
                     .selectable_label(is_it, &compare.value.title)
                     .on_hover_text(&compare.value.help);
                 if row.clicked() {
-                    chosen = Some(compared);
+                    chosen = Some(&compare.value);
                     ui.close();
                 }
             }
         });
         menu.response
             .on_hover_text("Comparisons that the graph offers");
-        if let Some(sides) = chosen {
+        if let Some(compare) = chosen {
+            let sides = self.comparison_sides(&info, compare);
+            self.layout.compared = Some((compare.title.clone(), sides.clone()));
             self.compare_sides(sides);
         }
     }
@@ -243,7 +247,7 @@ impl Workbench {
 
     fn experiments_menu(&mut self, ui: &mut Ui) {
         let mut chosen = None;
-        let mark = if self.modified() { "● " } else { "" };
+        let mark = if self.experiment.modified { "● " } else { "" };
         let title = format!("{mark}experiment: {}", self.experiment.name);
         let response = ui.menu_button(title, |ui| {
             for path in ron_files(&self.setup.home.root.join("configs")) {

@@ -25,7 +25,7 @@ pub(crate) enum Pane {
     Tab(String),
 }
 
-/// The panes beside the parameters that a new window shows in its middle.
+/// Panes of the stack of tabs in the middle.
 const MIDDLE: [Pane; 3] = [Pane::Picture, Pane::Texture, Pane::Nodes];
 
 /// Shares of the width: parameters, middle, tabs. The picture has more than 55 %.
@@ -155,7 +155,7 @@ impl Workbench {
     }
 }
 
-/// What the tiles show.
+/// Shows the content of tiles.
 struct Panes<'a> {
     workbench: &'a mut Workbench,
     textures: &'a [TextureId],

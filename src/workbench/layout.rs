@@ -1,5 +1,6 @@
 //! The panel of parameters, and the effect of keys.
 
+use crate::workbench::desired::request::SideRequest;
 use crate::workbench::engine::Order;
 use crate::workbench::picture::zoom;
 use crate::workbench::{Workbench, help, panel, watch};
@@ -19,6 +20,8 @@ pub(super) struct Layout {
     pub resize_since: Option<Instant>,
     /// Whether the window asks about unsaved changes before it closes.
     pub asks_close: bool,
+    /// Title and sides of the graph's comparison that was chosen last.
+    pub compared: Option<(String, [Option<SideRequest>; 2])>,
     /// The window's title, as last set.
     pub title: String,
 }
@@ -33,6 +36,7 @@ impl Layout {
             fixed_size,
             resize_since: None,
             asks_close: false,
+            compared: None,
             title: String::new(),
         }
     }

@@ -221,6 +221,8 @@ struct OpenExperiment {
     written: Option<PathBuf>,
     /// Its state when it was opened or saved; absent until its scene is loaded.
     baseline: Option<opening::Edited>,
+    /// Whether it differs from that; worked out once a frame.
+    modified: bool,
     /// Files that were opened, the latest first.
     recent: Vec<PathBuf>,
 }
@@ -287,6 +289,7 @@ impl Workbench {
                 file: Some(experiment),
                 written: None,
                 baseline: None,
+                modified: false,
                 recent: Vec::new(),
             },
             device: None,

@@ -178,23 +178,20 @@ impl Workbench {
         }
     }
 
-    /// Remembers the experiment as it was opened, once its scene is there.
+    /// Remembers the experiment as it was opened, once its scene is there, and compares with it.
     pub(super) fn note_baseline(&mut self) {
         let is_there = self.missing_scene().is_none() && self.experiment.file.is_none();
         if self.experiment.baseline.is_none() && is_there && self.sides[0].info.is_some() {
             self.saved_state();
         }
+        let baseline = self.experiment.baseline.as_ref();
+        self.experiment.modified = baseline.is_some_and(|saved| *saved != self.edited());
     }
 
     /// Takes the present state for the saved one.
     pub(super) fn saved_state(&mut self) {
         self.experiment.baseline = Some(self.edited());
-    }
-
-    /// Whether the experiment differs from its file.
-    pub(super) fn modified(&self) -> bool {
-        let baseline = self.experiment.baseline.as_ref();
-        baseline.is_some_and(|saved| *saved != self.edited())
+        self.experiment.modified = false;
     }
 
     /// The present experiment, as side A shows it.

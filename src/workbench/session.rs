@@ -1,4 +1,4 @@
-//! What comes back after a restart or a kill: layout, theme, size, recent files, and the experiment
+//! State that is restored after a restart or a kill: layout, theme, size, recent files, and the experiment
 //! with its unsaved changes. It is kept in `captures/.session` of the program's folder, and written
 //! at most every two seconds, when something has changed.
 
@@ -22,7 +22,7 @@ const INTERVAL: Duration = Duration::from_secs(2);
 pub enum Restore {
     /// Nothing, and nothing is written.
     Nothing,
-    /// Layout, theme, size and recent files, with an experiment that was asked for.
+    /// Layout, theme, size and recent files, with a requested experiment.
     Layout,
     /// The experiment, too.
     Experiment,
@@ -154,7 +154,7 @@ impl Workbench {
         }
     }
 
-    /// Writes what differs from the files of the session.
+    /// Writes the files of the session that changed.
     pub(crate) fn write_session(&mut self, context: &egui::Context) {
         let Some(folder) = self.session.folder.clone() else {
             return;
@@ -171,7 +171,7 @@ impl Workbench {
             recent: self.experiment.recent.clone(),
             name: self.experiment.name.clone(),
             file: self.session.file.clone(),
-            modified: self.modified(),
+            modified: self.experiment.modified,
             compares: self.desired.sides[1].is_some(),
         };
         let Ok(text) = ron::ser::to_string_pretty(&window, ron::ser::PrettyConfig::default())
@@ -238,7 +238,7 @@ impl Workbench {
 
     /// Whether the window may close. Unsaved changes are asked about once.
     pub(crate) fn may_close(&mut self) -> bool {
-        if self.layout.asks_close || !self.modified() {
+        if self.layout.asks_close || !self.experiment.modified {
             return true;
         }
         self.layout.asks_close = true;
@@ -266,7 +266,7 @@ impl Workbench {
                 }
                 if save.clicked() {
                     self.save(true);
-                    if !self.modified() {
+                    if !self.experiment.modified {
                         close(ui);
                     }
                     self.layout.asks_close = false;
@@ -286,7 +286,7 @@ impl Workbench {
 
     /// The window's title: the modified sign, experiment and scene.
     pub(super) fn set_title(&mut self, context: &egui::Context) {
-        let mark = if self.modified() { "● " } else { "" };
+        let mark = if self.experiment.modified { "● " } else { "" };
         let scene = super::short(&self.desired.scene);
         let title = format!("{mark}{} - {scene} - conelab", self.experiment.name);
         if title != self.layout.title {

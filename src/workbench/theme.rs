@@ -26,7 +26,7 @@ pub(crate) struct Roles {
     pub text: Color32,
     /// Explanations, units, table heads.
     pub secondary: Color32,
-    /// Behind what is selected.
+    /// Behind selected widgets.
     pub selected: Color32,
     /// Text and marks on [`Roles::selected`].
     pub on_selected: Color32,
@@ -35,7 +35,7 @@ pub(crate) struct Roles {
     /// Values that are not at their default, and warnings.
     pub modified: Color32,
     pub error: Color32,
-    /// What has been reached, such as a converged picture.
+    /// A reached state, such as a converged picture.
     pub good: Color32,
     /// Behind the costliest pass of the nodes.
     pub hot: Color32,
@@ -105,7 +105,7 @@ pub(crate) fn install(context: &Context) {
     }
 }
 
-/// Noto Sans, whose digits have one width, before the icons and egui's own fonts.
+/// Noto Sans, with digits of one width, before the icons and egui's own fonts.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
     let bold = FontFamily::Name("bold".into());

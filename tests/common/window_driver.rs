@@ -212,17 +212,15 @@ impl WindowDriver {
         self.find_window();
     }
 
+    /// The number of a name of the window system.
+    fn atom(&self, name: &[u8]) -> u32 {
+        let asked = self.x.intern_atom(false, name).unwrap();
+        asked.reply().unwrap().atom
+    }
+
     /// The window's title.
     pub fn title(&self) -> String {
-        let atom = |name: &[u8]| {
-            self.x
-                .intern_atom(false, name)
-                .unwrap()
-                .reply()
-                .unwrap()
-                .atom
-        };
-        let (name, kind) = (atom(b"_NET_WM_NAME"), atom(b"UTF8_STRING"));
+        let (name, kind) = (self.atom(b"_NET_WM_NAME"), self.atom(b"UTF8_STRING"));
         let property = self.x.get_property(false, self.window, name, kind, 0, 64);
         String::from_utf8(property.unwrap().reply().unwrap().value).unwrap()
     }
@@ -618,16 +616,8 @@ impl WindowDriver {
 
     /// Presses the button of the window's frame that closes it.
     pub fn ask_to_close(&self) {
-        let atom = |name: &[u8]| {
-            self.x
-                .intern_atom(false, name)
-                .unwrap()
-                .reply()
-                .unwrap()
-                .atom
-        };
-        let data = [atom(b"WM_DELETE_WINDOW"), 0, 0, 0, 0];
-        let message = ClientMessageEvent::new(32, self.window, atom(b"WM_PROTOCOLS"), data);
+        let data = [self.atom(b"WM_DELETE_WINDOW"), 0, 0, 0, 0];
+        let message = ClientMessageEvent::new(32, self.window, self.atom(b"WM_PROTOCOLS"), data);
         self.x
             .send_event(false, self.window, EventMask::NO_EVENT, message)
             .unwrap()
