@@ -152,7 +152,7 @@ fn an_engine_that_ends_by_a_fault_says_so_and_another_goes_on() {
         }
     };
     assert!(
-        why.contains("a fault in the program") && why.contains("injected by a test"),
+        why.contains("the renderer crashed") && why.contains("injected by a test"),
         "{why}"
     );
     let failed = (driver.request.clock.jumps, driver.request.clone());
