@@ -146,7 +146,7 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
 }
 
 /// A value with its position.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Loc<T> {
     /// The parsed value.
     pub value: T,

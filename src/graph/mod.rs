@@ -1,6 +1,7 @@
 //! The pass graph: parameters, textures, buffers and passes, read from RON. It knows the names and
 //! settings of tools, and nothing of the method.
 
+mod debug;
 mod definition;
 pub mod effect;
 mod evaluated;
@@ -17,6 +18,7 @@ pub mod run;
 mod signature;
 pub mod table;
 
+pub use debug::{Debug, DebugRow};
 pub use definition::{Alias, AliasCase, Graph, LightPart, Named, Res};
 pub use evaluated::Evaluated;
 pub use signature::signed;

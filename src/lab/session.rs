@@ -7,7 +7,7 @@ use crate::graph::param::Params;
 use crate::graph::plan::plan;
 use crate::graph::run::{Execution, FrameTimes, Update};
 use crate::graph::table::Table;
-use crate::graph::{Evaluated, signed};
+use crate::graph::{Debug, Evaluated, signed};
 use crate::scene::{Camera, Light};
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -250,7 +250,27 @@ impl Session {
                 failed.push(format!("{} ({value})", check.message));
             }
         }
+        if let Some(debug) = self.debug()? {
+            failed.extend(debug.failed.iter().map(ToString::to_string));
+        }
         Ok(failed)
+    }
+
+    /// Values and failed checks that shaders recorded in the last frame
+    /// (`shaders/common/debug.glsl`); nothing where no pass that runs records any.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn debug(&mut self) -> Result<Option<Debug>, LabError> {
+        match Debug::buffer(&self.graph).filter(|b| self.program.plan.buffers[*b].used) {
+            Some(buffer) => {
+                let bytes = self.program.read_buffer(buffer)?;
+                let passes = self.program.plan.passes();
+                let names = Debug::names(&self.graph, &self.linked, &passes);
+                Ok(Some(Debug::read(&names, &bytes)))
+            }
+            None => Ok(None),
+        }
     }
 
     /// Reads a texture's mip and layer.

@@ -2,6 +2,7 @@
 //! inputs.
 
 use super::access::decorated;
+use super::debug::{DEBUG_FILE, numbered};
 use super::macros::{Grown, check_growth, check_version};
 use super::reflect::{Interface, MAX_BINDINGS, reflect};
 use crate::diagnostics::excerpt::excerpt;
@@ -297,9 +298,25 @@ impl ShaderCompiler {
             };
             vec![Diagnostic::error(place, message)]
         };
+        let misused = |(file, line, message): (String, u32, String)| {
+            let (place, source) = self.place(&file, line, texts);
+            let found = Diagnostic::error(place, message);
+            vec![Diagnostic { source, ..found }]
+        };
+        let (compiled, _) = numbered(&source.file, texts).map_err(misused)?;
+        let compiled = &compiled;
         let compiler = COMPILER.as_ref();
         let compiler = compiler.map_err(|e| broken(format!("the compiler did not start: {e}")))?;
         let (mut options, kind) = options(source.stage).map_err(|e| broken(e.to_string()))?;
+        if texts.contains_key(DEBUG_FILE) {
+            let stage = match source.stage {
+                Stage::Fragment => "4",
+                Stage::Compute => "5",
+                _ => "0",
+            };
+            options.add_macro_definition("DEBUG_STAGE", Some(stage));
+        }
+        let main = compiled.get(&source.file).map_or("", String::as_str);
         // Files that include others twice grow exponentially with depth.
         let (count, chain) = (Cell::new(0), RefCell::new(Vec::new()));
         options.set_include_callback(move |name, _, _, depth| {
@@ -313,7 +330,7 @@ impl ShaderCompiler {
                     "{TOO_MANY} ({MAX_INCLUDES} at most, {MAX_DEPTH} of them nested): {names}"
                 ));
             }
-            match texts.get(name) {
+            match compiled.get(name) {
                 Some(content) => Ok(shaderc::ResolvedInclude {
                     resolved_name: name.to_string(),
                     content: content.clone(),
@@ -324,7 +341,6 @@ impl ShaderCompiler {
                 }
             }
         });
-        let main = texts.get(&source.file).map_or("", String::as_str);
         let late = check_version(main).map_err(|(line, message)| Grown {
             file: source.file.clone(),
             line,

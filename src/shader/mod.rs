@@ -2,6 +2,7 @@
 
 mod access;
 mod compile;
+mod debug;
 pub(crate) mod layout;
 mod macros;
 mod reflect;
@@ -12,6 +13,7 @@ mod strip;
 pub(crate) use compile::{Compiled, Generated, find, module_include};
 pub(crate) use compile::{MAX_BYTES, is_inside};
 pub use compile::{ShaderCompiler, Source, read_module};
+pub(crate) use debug::{DebugName, debug_names};
 pub(crate) use layout::Layout;
 pub(crate) use reflect::Binding;
 pub use reflect::{Resource, Shape};

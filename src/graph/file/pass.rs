@@ -80,7 +80,7 @@ pub const DISPATCH_WORDS: u32 = 3;
 pub const DRAW_WORDS: u32 = 4;
 
 /// A pass.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PassDecl {
     /// Name, for people and timings.

@@ -60,6 +60,10 @@ fn members(graph: &Graph) -> String {
 /// The files that the graph makes for its shaders.
 pub fn generated(graph: &Graph, params: &Params) -> Generated {
     let mut files = Generated::from([("params.glsl".into(), params.glsl(&members(graph)))]);
+    let pixel = graph.pointer.as_ref();
+    let pixel = pixel.map_or("-1".into(), |name| format!("floor(params.{name})"));
+    let text = format!("ivec2 clickedPixel() {{ return ivec2({pixel}); }}\n");
+    files.insert("common/debug_pixel.glsl".into(), text);
     let fixed = graph
         .modules
         .iter()

@@ -2,6 +2,7 @@
 
 use super::place::Words;
 use crate::diagnostics::{At, Diagnostic, Severity};
+use crate::graph::debug::DEBUG_BUFFER;
 use crate::graph::definition::Graph;
 use crate::shader::module_include;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -82,5 +83,6 @@ fn wanted(graph: &Graph) -> HashSet<&str> {
     let of_tools = graph.tools.iter().flat_map(|t| &t.1.value.resources.0);
     let of_tools = of_tools.map(|(_, name)| &name.value);
     let names = outputs.chain(parts).chain(checks).chain(tables);
-    names.chain(of_tools).map(String::as_str).collect()
+    let names = names.chain(of_tools).map(String::as_str);
+    names.chain([DEBUG_BUFFER]).collect()
 }

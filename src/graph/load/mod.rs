@@ -34,7 +34,8 @@ pub fn load(
     let retired = include.retired();
     include.file(path, None);
     let (files, mut found) = (include.files, include.found);
-    let joined = joined(files, &mut found);
+    let mut joined = joined(files, &mut found);
+    super::debug::declare(&mut joined.file, &mut joined.passes);
     let mut file = joined.file;
     join::leave_out_fixed(&mut file);
     let mut textures = by_name(take(&mut file.textures));

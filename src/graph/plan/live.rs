@@ -2,6 +2,7 @@
 
 use super::data::{BindingPlan, Plan, Step, Work};
 use super::uses::{Part, Use, UseKind, parts};
+use crate::graph::debug::{CLEAR, DEBUG_BUFFER};
 use crate::graph::definition::{Graph, Res};
 use crate::graph::link::Linked;
 use crate::shader::Resource;
@@ -25,10 +26,11 @@ pub(super) fn prune(graph: &Graph, linked: &[Linked], plan: &mut Plan, wanted: &
         };
         at_end.extend((0..mips).map(|mip| (res, mip)));
     }
+    let debug = graph.buffer(DEBUG_BUFFER).map(|b| Res::Buffer(b, false));
     // A read before the first write needs the content at the end of the last frame: repeat until
     // nothing is added.
     let kept = loop {
-        let (kept, at_start, history) = backward(&plan.steps, &at_end);
+        let (kept, at_start, history) = backward(&plan.steps, &at_end, debug);
         let before = at_end.len();
         at_end.extend(at_start);
         at_end.extend(history);
@@ -62,7 +64,8 @@ pub(super) fn prune(graph: &Graph, linked: &[Linked], plan: &mut Plan, wanted: &
     }
     plan.steps = steps;
     for pass in unneeded {
-        if !plan.steps.iter().any(|s| s.pass == pass) {
+        let hidden = graph.pass_name(pass) == CLEAR;
+        if !hidden && !plan.steps.iter().any(|s| s.pass == pass) {
             plan.dropped
                 .push((pass, String::from("its output is unused")));
         }
@@ -115,13 +118,19 @@ struct Needed {
 fn backward(
     steps: &[Step],
     at_end: &BTreeSet<Part>,
+    debug: Option<Res>,
 ) -> (Vec<Option<Needed>>, BTreeSet<Part>, BTreeSet<Part>) {
     let mut live = at_end.clone();
     let mut history = BTreeSet::new();
     let mut kept: Vec<Option<Needed>> = vec![None; steps.len()];
     for (i, step) in steps.iter().enumerate().rev() {
         let for_nobody = |u: &Use| parts(u).all(|p| !live.contains(&p));
-        let needed = step.uses.iter().any(|u| u.write && !for_nobody(u));
+        // Shown values keep no pass alive, but their clear.
+        let records = |u: &Use| Some(u.res) == debug && u.kind != UseKind::Clear;
+        let needed = step
+            .uses
+            .iter()
+            .any(|u| u.write && !records(u) && !for_nobody(u));
         if !needed {
             continue;
         }

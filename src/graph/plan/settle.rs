@@ -6,7 +6,8 @@ use super::converge::Declared;
 use super::data::{Plan, Settling, Step};
 use super::uses::{Use, parts};
 use crate::diagnostics::{At, Diagnostic};
-use crate::graph::definition::Graph;
+use crate::graph::debug::DEBUG_BUFFER;
+use crate::graph::definition::{Graph, Res};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The groups of steps that converge; `frames` has the place and the count of each pass's
@@ -42,12 +43,17 @@ pub(super) fn find(
         }
         Settling {
             frames,
-            ring: ring(steps, &own),
+            ring: ring(steps, &own, debug(graph)),
             kept,
             steps: own,
         }
     };
     Ok(groups.into_values().map(settling).collect())
+}
+
+/// The buffer of shown values. Passes that share it do not depend on one another.
+fn debug(graph: &Graph) -> Option<Res> {
+    graph.buffer(DEBUG_BUFFER).map(|b| Res::Buffer(b, false))
 }
 
 fn written<'a>(steps: &'a [Step], own: &[usize]) -> impl Iterator<Item = &'a Use> {
@@ -62,7 +68,8 @@ fn meddler(graph: &Graph, plan: &Plan, own: &[usize]) -> Option<Diagnostic> {
     let name = |i: usize| &graph.passes[steps[i].pass].value.name;
     for (i, step) in steps.iter().enumerate().filter(|(i, _)| !own.contains(i)) {
         for u in &step.uses {
-            let Some(theirs) = written(steps, own).find(|w| w.res == u.res) else {
+            let shared = |w: &&Use| w.res == u.res && Some(w.res) != debug(graph);
+            let Some(theirs) = written(steps, own).find(shared) else {
                 continue;
             };
             let what = graph.title_of(u.res);
@@ -90,13 +97,13 @@ fn meddler(graph: &Graph, plan: &Plan, own: &[usize]) -> Option<Diagnostic> {
 }
 
 /// Steps that depend on some of `own`, over frames too, and on which those depend.
-fn ring(steps: &[Step], own: &[usize]) -> Vec<usize> {
+fn ring(steps: &[Step], own: &[usize], debug: Option<Res>) -> Vec<usize> {
     // Both copies of a resource with a history: it is read in this frame or in the next.
     let touched = |i: usize, how: fn(&Use) -> bool| -> BTreeSet<_> {
         steps[i]
             .uses
             .iter()
-            .filter(|u| how(u))
+            .filter(|u| how(u) && Some(u.res) != debug)
             .flat_map(parts)
             .collect()
     };
