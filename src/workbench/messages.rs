@@ -72,7 +72,7 @@ impl Workbench {
         });
     }
 
-    fn open_editor(&mut self, place: &Place) {
+    pub(super) fn open_editor(&mut self, place: &Place) {
         let mut file = place.file.clone();
         if !file.is_absolute() && !file.exists() {
             file = self.setup.home.root.join(file);

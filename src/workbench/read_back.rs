@@ -1,7 +1,7 @@
 //! Resources of the running graph that a tab reads back: the request, and the content.
 
-use crate::graph::Graph;
 use crate::graph::table::Table;
+use crate::graph::{Debug, Graph};
 use crate::lab::{LabError, Session, Texels};
 use crate::workbench::desired::request::InspectTarget;
 use std::sync::Arc;
@@ -13,6 +13,8 @@ pub enum ReadBack {
     Texture(InspectTarget),
     /// A table of side A, by its number in the graph.
     Table(usize),
+    /// Values and failed checks of the shaders of side A.
+    Debug,
 }
 
 /// Its content.
@@ -21,6 +23,8 @@ pub enum Content {
     Texels(InspectTarget, Arc<Texels>),
     /// Number and layout of a table, and the bytes of its buffer.
     Table(usize, Table, Vec<u8>),
+    /// Values and failed checks of shaders; nothing where no pass records any.
+    Debug(Option<Debug>),
 }
 
 impl ReadBack {
@@ -28,7 +32,7 @@ impl ReadBack {
     pub fn side(&self) -> usize {
         match self {
             ReadBack::Texture(target) => target.side,
-            ReadBack::Table(_) => 0,
+            ReadBack::Table(_) | ReadBack::Debug => 0,
         }
     }
 
@@ -40,6 +44,7 @@ impl ReadBack {
                 let table = graph?.tables.get(*number)?;
                 Some(table.value.list.value.buffer.clone())
             }
+            ReadBack::Debug => None,
         }
     }
 
@@ -61,6 +66,7 @@ impl ReadBack {
                 let bytes = session.buffer(&name)?;
                 Ok(Some(Content::Table(*number, table, bytes)))
             }
+            ReadBack::Debug => Ok(Some(Content::Debug(session.debug()?))),
         }
     }
 }

@@ -7,6 +7,8 @@ pub(crate) mod inspector;
 pub(crate) mod nodes;
 pub(crate) mod paths;
 mod sequence;
+mod shader_files;
+mod shader_values;
 pub(crate) mod surroundings;
 pub(crate) mod tables;
 pub(crate) mod times;

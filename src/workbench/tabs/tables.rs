@@ -1,6 +1,7 @@
 //! Buffers of the graph as tables.
 
 use super::Tab;
+use crate::graph::Debug;
 use crate::graph::table::{Cell, CellKind, Column, Table, decode};
 use crate::workbench::Workbench;
 use crate::workbench::engine::report::Report;
@@ -16,6 +17,10 @@ pub struct Tables {
     /// Value of the first column that is shown; all when absent.
     filter: Option<String>,
     came: Option<Came>,
+    /// Whether values of shaders are shown in place of a table.
+    pub(super) shows_values: bool,
+    /// The last values of shaders.
+    pub(super) values: Option<Debug>,
     rows: Option<Rows>,
 }
 
@@ -49,6 +54,9 @@ impl Tab for Tables {
         if let Report::Content(Content::Table(number, table, bytes)) = report {
             let (table, bytes) = (table.clone(), bytes.clone());
             workbench.tabs.tables.note(*number, table, bytes);
+        }
+        if let Report::Content(Content::Debug(values)) = report {
+            workbench.tabs.tables.values.clone_from(values);
         }
     }
 }
@@ -185,6 +193,9 @@ impl Workbench {
             ui.weak(self.waiting_text());
             return;
         };
+        if self.shader_values(ui, &info) {
+            return;
+        }
         let list = &info.graph.tables;
         self.tabs.tables.chosen = self.tabs.tables.chosen.min(list.len().saturating_sub(1));
         let Some(mut table) = list.get(self.tabs.tables.chosen).map(|t| &t.value) else {

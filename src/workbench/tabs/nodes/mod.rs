@@ -326,6 +326,7 @@ impl Workbench {
         if let Some(uses) = info.uses.iter().find(|u| u.pass == number) {
             self.pass_resources(ui, side, info, uses);
         }
+        self.shader_files(ui, info, number);
         needed
     }
 
