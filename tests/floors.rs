@@ -25,11 +25,11 @@ const GRAPH: [&[&str]; 9] = [
     &["expr", "interface"],
     &["param"],
     &["file"],
-    &["table", "definition"],
+    &["table", "definition", "debug"],
     &["load", "evaluated"],
     &["link"],
     &["plan"],
-    &["effect", "report", "outline", "signature"],
+    &["effect", "report", "outline", "signature", "debug_record"],
     &["run"],
 ];
 

@@ -2,6 +2,7 @@
 //! settings of tools, and nothing of the method.
 
 mod debug;
+mod debug_record;
 mod definition;
 pub mod effect;
 mod evaluated;
@@ -18,7 +19,7 @@ pub mod run;
 mod signature;
 pub mod table;
 
-pub use debug::{Debug, DebugRow};
+pub use debug_record::{Debug, DebugRow};
 pub use definition::{Alias, AliasCase, Graph, LightPart, Named, Res};
 pub use evaluated::Evaluated;
 pub use signature::signed;

@@ -51,7 +51,18 @@ pub(super) fn numbered(
         };
         all.insert(file.clone(), text);
     }
+    let others = texts.iter().filter(|(file, _)| *file != DEBUG_FILE);
+    if names.is_empty() && !others.map(|f| f.1).any(|text| selects(text)) {
+        // Its variables would change the instructions of a shader that calls nothing.
+        all.insert(DEBUG_FILE.to_string(), String::new());
+    }
     Ok((all, names))
+}
+
+/// Whether a file uses another function of the include, such as `debugIf`.
+fn selects(text: &str) -> bool {
+    let mut words = text.split(|c| !is_word(c));
+    words.any(|w| w.len() > 5 && w.starts_with("debug"))
 }
 
 /// A file with numbers in place of names.
@@ -148,6 +159,10 @@ mod tests {
             .collect();
         assert_eq!(found, [("a b", 4, false), ("c", 6, true)]);
         assert_eq!(all[DEBUG_FILE], texts("")[DEBUG_FILE]);
+        let unused = numbered("main.comp", &texts("// show, check")).unwrap();
+        assert_eq!(unused.0[DEBUG_FILE], "");
+        let selects = numbered("main.comp", &texts("debugIf(true);")).unwrap();
+        assert_eq!(selects.0[DEBUG_FILE], texts("")[DEBUG_FILE]);
     }
 
     #[test]

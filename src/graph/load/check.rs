@@ -4,6 +4,7 @@ use super::findings::Findings;
 use super::include::Folders;
 use super::params::is_identifier;
 use crate::diagnostics::{At, Entries, Items, Loc, RawText, nearest};
+use crate::graph::debug::DEBUG_BUFFER;
 use crate::graph::definition::Graph;
 use crate::graph::expr::Ex;
 use crate::graph::file::{CheckDecl, CompareDecl, Path, TableDecl, ToolDecl};
@@ -272,8 +273,11 @@ impl<'g> Check<'g> {
 
     pub(super) fn buffer_name(&mut self, name: &Loc<String>) -> bool {
         let graph = self.graph;
-        graph.buffer(&name.value).is_some()
-            || self.missing(name, "buffer", graph.buffers.iter().map(|b| b.0.as_str()))
+        graph.buffer(&name.value).is_some() || {
+            // The buffer that no file declares is no suggestion.
+            let names = graph.buffers.iter().map(|b| b.0.as_str());
+            self.missing(name, "buffer", names.filter(|name| *name != DEBUG_BUFFER))
+        }
     }
 
     /// Reports a name that stands for nothing of a kind; false.

@@ -26,7 +26,7 @@ impl Workbench {
         if !tables.shows_values {
             return false;
         }
-        self.desired.read_back = Some(ReadBack::Debug);
+        self.desired.read_back.push(ReadBack::Debug);
         let Some(debug) = self.tabs.tables.values.clone() else {
             ui.weak("…");
             return true;
