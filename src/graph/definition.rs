@@ -1,5 +1,6 @@
 //! A graph that was read and checked, and where things are in it.
 
+use super::debug::CLEAR;
 use super::expr::{Env, Ex};
 use super::file::{
     Bind, BufferDecl, CheckDecl, CompareDecl, PassDecl, RefuseDecl, SceneNeeds, TableDecl,
@@ -212,6 +213,13 @@ impl Graph {
             self.name_of(res),
             if last { " (last frame)" } else { "" }
         )
+    }
+
+    /// The passes that files declare, with their numbers: all but the one that clears what shaders
+    /// show.
+    pub fn declared_passes(&self) -> impl Iterator<Item = (usize, &PassDecl)> {
+        let passes = self.passes.iter().map(|pass| &pass.value).enumerate();
+        passes.filter(|(_, pass)| pass.name.value != CLEAR)
     }
 
     /// The name of a pass.

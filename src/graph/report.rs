@@ -15,7 +15,7 @@ use std::fmt::Write;
 /// names of the others.
 pub fn summary(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> String {
     let graph = set.graph;
-    let (ran, all) = (plan.passes().len(), graph.passes.len());
+    let (ran, all) = (plan.passes().len(), graph.declared_passes().count());
     let params = graph.params.offered().count();
     let head = format!("graph {}: {ran} of {all} passes run", graph.name);
     let mut out = format!("{head}, {params} parameters");
@@ -156,7 +156,7 @@ fn shared(plan: &Plan) -> (u64, u64) {
 /// Every step in order with its barriers; sizes, formats and lifetimes of resources; passes left
 /// out, with reasons.
 pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
-    let (ran, all) = (plan.passes().len(), graph.passes.len());
+    let (ran, all) = (plan.passes().len(), graph.declared_passes().count());
     let mut out = format!("graph {}: {ran} of {all} passes run\n\norder\n", graph.name);
     let schedule = schedule(plan);
     for (i, step) in plan.steps.iter().enumerate() {

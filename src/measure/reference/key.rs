@@ -74,13 +74,14 @@ pub(super) fn key(
     scene: &Arc<Scene>,
 ) -> Result<String, LabError> {
     let mut parts: Vec<Vec<u8>> = Vec::new();
-    for (link, pass) in loaded.linked.iter().zip(&loaded.graph.passes) {
-        parts.push(pass.value.name.value.clone().into());
-        parts.extend(
-            link.stages
-                .iter()
-                .map(|s| bytemuck::cast_slice(&s.words).to_vec()),
-        );
+    for (number, pass) in loaded.graph.declared_passes() {
+        parts.push(pass.name.value.clone().into());
+        let stages = loaded
+            .linked
+            .get(number)
+            .into_iter()
+            .flat_map(|l| &l.stages);
+        parts.extend(stages.map(|s| bytemuck::cast_slice(&s.words).to_vec()));
     }
     parts.push(scene_hash(scene).into());
     parts.push(format!("{:?}", camera_of(traced, scene)?).into());

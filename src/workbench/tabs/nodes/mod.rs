@@ -259,8 +259,8 @@ impl Workbench {
             .times
             .means(ui.ctx(), side, self.desired.sides[1].is_some());
         let mut found = None;
-        for (number, pass) in info.graph.passes.iter().enumerate() {
-            let name = &pass.value.name.value;
+        for (number, pass) in info.graph.declared_passes() {
+            let name = &pass.name.value;
             let uses = info.uses.iter().filter(|u| u.pass == number);
             let mut names = uses.flat_map(|u| &u.writes).chain([name]);
             if !names.any(|name| folded(name).contains(&needle)) {
