@@ -56,20 +56,25 @@ impl Workbench {
         ui.separator();
         let compares = self.desired.sides[1].is_some();
         let toggle = ui.selectable_label(compares, "A | B").on_hover_text(
-            "Compare with a second experiment. Off, A returns to its values from before unless you edited it",
+            "Compare with a second experiment (B). Off, A returns to its values from before unless you edited it",
         );
         if toggle.clicked() {
-            match compares {
-                false => {
-                    let a = &self.desired.sides[0];
-                    self.compare_sides([a.clone(), a.clone()]);
-                }
-                true => self.end_comparison(),
-            }
+            self.toggle_comparison();
         }
         self.comparisons(ui);
         if self.desired.sides[1].is_some() {
             self.compare_bar(ui);
+        }
+    }
+
+    /// Starts a comparison with a copy of A, or ends it.
+    pub(super) fn toggle_comparison(&mut self) {
+        match self.desired.sides[1].is_some() {
+            false => {
+                let a = &self.desired.sides[0];
+                self.compare_sides([a.clone(), a.clone()]);
+            }
+            true => self.end_comparison(),
         }
     }
 
@@ -98,7 +103,7 @@ impl Workbench {
         if icon_button(ui, icons::TIMER, "timers", about, timers) {
             self.view.timers = self.view.timers.next();
         }
-        let about = "Continuous: render without pause, to measure. Otherwise frames are rendered only when something changes";
+        let about = "Continuous: render without pause, to measure; otherwise only when something changes (C)";
         let continuous = self.desired.continuous;
         if icon_button(ui, icons::INFINITY, "continuous", about, continuous) {
             self.desired.continuous = !continuous;

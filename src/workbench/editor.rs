@@ -12,19 +12,24 @@ pub fn open(file: &Path, line: u32) -> String {
     let named = VARIABLES
         .iter()
         .find_map(|v| Some((*v, std::env::var(v).ok().filter(|t| !t.trim().is_empty())?)));
-    let words = match &named {
-        Some((_, text)) => command(text, file, line),
-        None => vec!["xdg-open".to_string(), file.to_string_lossy().into_owned()],
+    let Some((variable, text)) = named else {
+        return show(file);
     };
+    let words = command(&text, file, line);
     match start(&words) {
         Ok(()) => format!("{} opens {}:{line}", words[0], file.display()),
-        Err(e) => {
-            let from = named.map_or(
-                String::from("set CONELAB_EDITOR, for example to `code -g {file}:{line}`"),
-                |(v, _)| format!("{v} names it"),
-            );
-            format!("cannot start '{}' ({e}): {from}", words[0])
-        }
+        Err(e) => format!("cannot start '{}' ({e}): {variable} names it", words[0]),
+    }
+}
+
+/// Opens a file with the system's program for it. Returns a message.
+pub fn show(file: &Path) -> String {
+    let name = file.display();
+    match open::that_detached(file) {
+        Ok(()) => format!("opened {name}"),
+        Err(e) => format!(
+            "cannot open {name} ({e}): for sources, set CONELAB_EDITOR, for example to `code -g {{file}}:{{line}}`"
+        ),
     }
 }
 

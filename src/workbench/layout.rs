@@ -3,13 +3,16 @@
 use crate::workbench::desired::request::SideRequest;
 use crate::workbench::engine::Order;
 use crate::workbench::picture::zoom;
-use crate::workbench::{Workbench, help, panel, watch};
+use crate::workbench::tabs::TABS;
+use crate::workbench::{Workbench, dock, help, panel, watch};
 use egui::Ui;
 use std::time::Instant;
 
 /// What of the window is shown, and how large.
 pub(super) struct Layout {
     pub help: bool,
+    /// Text that the rows of the help contain.
+    pub help_search: String,
     /// Whether the panels at the sides are hidden.
     pub hidden: bool,
     pub full_screen: bool,
@@ -30,6 +33,7 @@ impl Layout {
     pub fn new(fixed_size: Option<(u32, u32)>) -> Layout {
         Layout {
             help: false,
+            help_search: String::new(),
             hidden: false,
             full_screen: false,
             area: [0, 0],
@@ -84,6 +88,11 @@ impl Workbench {
     }
 
     pub(super) fn shortcuts(&mut self, ui: &Ui) {
+        // Menus and dialogs take the keys.
+        let dialog = self.layout.asks_close || self.scene.models.is_open();
+        if dialog || egui::Popup::is_any_open(ui.ctx()) {
+            return;
+        }
         let typing = ui.ctx().egui_wants_keyboard_input();
         for action in help::pressed(ui, typing) {
             match action {
@@ -106,7 +115,17 @@ impl Workbench {
                 help::Action::Unpoint if std::mem::take(&mut self.panel.typing) => {
                     self.panel.search.clear()
                 }
-                help::Action::Unpoint => self.point_at(None),
+                help::Action::Unpoint => match self.layout.help {
+                    true => self.layout.help = false,
+                    false => self.point_at(None),
+                },
+                help::Action::Compare => self.toggle_comparison(),
+                help::Action::NextMode => self.view.mode = self.view.mode.next(),
+                help::Action::Continuous => self.desired.continuous = !self.desired.continuous,
+                help::Action::Tab(number) => {
+                    self.layout.hidden = false;
+                    self.dock.open(dock::Pane::Tab(TABS[number].title.into()));
+                }
                 help::Action::Save => self.save(false),
                 help::Action::Capture => self.capture(),
                 help::Action::Panels => self.layout.hidden = !self.layout.hidden,

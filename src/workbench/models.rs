@@ -81,6 +81,11 @@ impl Models {
         self.dialog.pick_file();
     }
 
+    /// Whether the dialog is open.
+    pub fn is_open(&self) -> bool {
+        *self.dialog.state() == DialogState::Open
+    }
+
     /// Shows the dialog, if it is open; the file that was picked.
     pub fn picked(&mut self, ui: &Ui) -> Option<PathBuf> {
         if *self.dialog.state() == DialogState::Closed {

@@ -30,6 +30,14 @@ pub const MODES: [(Mode, &str); 5] = [
     (Mode::Perceived, "FLIP error"),
 ];
 
+impl Mode {
+    /// The mode after this one; the first after the last.
+    pub fn next(self) -> Mode {
+        let at = MODES.iter().position(|(mode, _)| *mode == self);
+        MODES[at.map_or(0, |at| (at + 1) % MODES.len())].0
+    }
+}
+
 /// A picture to compare: 8-bit RGBA.
 #[derive(Clone)]
 pub struct Shown {

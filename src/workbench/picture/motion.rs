@@ -1,8 +1,42 @@
 //! Moving the camera by mouse and keys.
 
 use crate::scene::Camera;
-use egui::{Key, Ui};
+use egui::{Event, Key, Ui};
 use glam::{Quat, Vec3};
+use std::collections::HashSet;
+
+/// The keys that are held down, by their places on a US keyboard.
+#[derive(Default)]
+pub struct Held(HashSet<Key>);
+
+impl Held {
+    /// Takes in the events of a frame.
+    pub fn update(&mut self, events: &[Event]) {
+        for event in events {
+            match event {
+                Event::Key {
+                    key,
+                    physical_key,
+                    pressed,
+                    ..
+                } => {
+                    let key = physical_key.unwrap_or(*key);
+                    match pressed {
+                        true => self.0.insert(key),
+                        false => self.0.remove(&key),
+                    };
+                }
+                // Releases are not seen without the focus.
+                Event::WindowFocused(false) => self.0.clear(),
+                _ => {}
+            }
+        }
+    }
+
+    fn has(&self, key: Key) -> f32 {
+        f32::from(u8::from(self.0.contains(&key)))
+    }
+}
 
 /// How the mouse moves the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,6 +57,7 @@ pub fn steer(
     mode: Mode,
     size: f32,
     speed: f32,
+    held: &Held,
 ) -> bool {
     let before = *camera;
     let delta = response.drag_delta();
@@ -56,18 +91,25 @@ pub fn steer(
             }
         }
     }
-    keys(ui, camera, size, speed);
+    keys(ui, camera, size * speed, held);
     *camera != before
 }
 
-fn keys(ui: &Ui, camera: &mut Camera, size: f32, speed: f32) {
+/// Moves by the keys that are held; `size` is that of the scene times the speed.
+fn keys(ui: &Ui, camera: &mut Camera, size: f32, keys: &Held) {
     if ui.ctx().egui_wants_keyboard_input() {
         return;
     }
     let (right, up) = axes(camera);
     let forward = direction(camera);
     let (go, seconds, fast) = ui.input(|i| {
-        let held = |key: Key| f32::from(u8::from(i.key_down(key) && !i.modifiers.command));
+        let held = |key: Key| {
+            if i.modifiers.command {
+                0.0
+            } else {
+                keys.has(key)
+            }
+        };
         let go = forward * (held(Key::W) - held(Key::S))
             + right * (held(Key::D) - held(Key::A))
             + up * (held(Key::E) - held(Key::Q));
@@ -77,7 +119,7 @@ fn keys(ui: &Ui, camera: &mut Camera, size: f32, speed: f32) {
         // The scene is crossed in about ten seconds.
         shift(
             camera,
-            go * seconds * 0.1 * size * speed * if fast { 4.0 } else { 1.0 },
+            go * seconds * 0.1 * size * if fast { 4.0 } else { 1.0 },
         );
         ui.ctx().request_repaint();
     }

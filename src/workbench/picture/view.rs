@@ -23,6 +23,8 @@ pub struct View {
     dragging_split: bool,
     /// Zoom and pan on the screen.
     pub zoom: Zoom,
+    /// Keys that move the camera.
+    held: motion::Held,
     /// Where picture A is, in points.
     pub place: Option<Rect>,
 }
@@ -38,6 +40,7 @@ impl Default for View {
             dragging_split: false,
             zoom: Zoom::default(),
             place: None,
+            held: motion::Held::default(),
         }
     }
 }
@@ -103,6 +106,7 @@ impl Workbench {
 
     /// Shows the picture and steers the camera.
     pub(crate) fn picture(&mut self, ui: &mut Ui, textures: &[TextureId]) {
+        ui.input(|i| self.view.held.update(&i.events));
         let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::click_and_drag());
         let area = response.rect;
         // Another ground than a picture's black: its edge is seen.
@@ -262,6 +266,7 @@ impl Workbench {
                 self.tabs.surroundings.steering,
                 self.scene.diagonal,
                 self.tabs.surroundings.speed,
+                &self.view.held,
             );
         }
     }

@@ -83,7 +83,8 @@ impl Workbench {
             if field.changed() {
                 (gallery.taken, gallery.saved) = (None, None);
             }
-            save = ui.button(text).on_hover_text("Ctrl S").clicked();
+            let enter = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+            save = ui.button(text).on_hover_text("Enter or Ctrl S").clicked() || enter;
         });
         if save {
             self.save(again);
