@@ -54,6 +54,9 @@ pub struct Graph {
     /// The `Vec2` parameter that a click on the picture sets: pixels from the picture's top left
     /// corner, negative where nothing is pointed at.
     pub pointer: Option<String>,
+    /// The `Vec2` parameter that is the inspected slice of a volume: axis, and position from 0 to 1;
+    /// negative where none is.
+    pub slice: Option<String>,
     /// Buffers that may be read as tables, on request.
     pub tables: Vec<Loc<TableDecl>>,
     /// Settings worth comparing.
@@ -213,6 +216,11 @@ impl Graph {
             self.name_of(res),
             if last { " (last frame)" } else { "" }
         )
+    }
+
+    /// Parameters that show something over the picture: states of the window, not of an experiment.
+    pub fn cursors(&self) -> impl Iterator<Item = &str> {
+        self.pointer.iter().chain(&self.slice).map(String::as_str)
     }
 
     /// The passes that files declare, with their numbers: all but the one that clears what shaders

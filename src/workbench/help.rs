@@ -3,7 +3,7 @@
 use crate::workbench::panel::control::named;
 use crate::workbench::tabs::TABS;
 use crate::workbench::{Workbench, editor, theme};
-use egui::{Key, KeyboardShortcut, Modifiers, Ui};
+use egui::{Align, Key, KeyboardShortcut, Modifiers, Ui};
 
 /// The effect of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -198,6 +198,9 @@ const MOUSE: [(&str, &str); 8] = [
     ("Click", "Probe a pixel, for example to draw its cones"),
 ];
 
+/// Width of the column of keys, points.
+const KEYS_WIDTH: f32 = 150.0;
+
 /// Pages of the documentation.
 const PAGES: [(&str, &str); 5] = [
     ("tour.md", "A tour of an hour"),
@@ -299,14 +302,17 @@ impl Workbench {
                     continue;
                 }
                 ui.label(theme::title(group));
-                let grid = egui::Grid::new(group).striped(true).min_col_width(110.0);
-                grid.show(ui, |ui| {
-                    for (keys, about) in &rows {
-                        ui.monospace(keys);
+                for (keys, about) in &rows {
+                    ui.horizontal_top(|ui| {
+                        let left = egui::Layout::left_to_right(Align::Min);
+                        let size = egui::vec2(KEYS_WIDTH, 0.0);
+                        ui.allocate_ui_with_layout(size, left, |ui| {
+                            ui.set_min_width(KEYS_WIDTH);
+                            ui.monospace(keys);
+                        });
                         ui.add(egui::Label::new(about).wrap());
-                        ui.end_row();
-                    }
-                });
+                    });
+                }
                 ui.add_space(6.0);
             }
             ui.label(theme::title("Documentation"));

@@ -54,13 +54,10 @@ impl Workbench {
             Ok(_) if own => {}
             Ok(experiment) => {
                 self.sides[0].errors.clear();
-                let pointer = self.sides[0]
-                    .info
-                    .as_ref()
-                    .and_then(|i| i.graph.pointer.as_deref());
+                let graph = self.sides[0].info.as_ref().map(|i| &*i.graph);
                 let shown = self.desired.sides[0].clone().unwrap_or_default();
                 if sorted(SideRequest::of(&experiment))
-                    != sorted(save::without_pointer(&shown, pointer))
+                    != sorted(save::without_cursors(&shown, graph))
                     || experiment.scene != self.desired.scene
                     || picture_of(&experiment) != self.desired.environment
                 {
@@ -167,11 +164,10 @@ impl Workbench {
 
     /// What saving the experiment would keep. The camera is left out: looking around is no edit.
     fn edited(&self) -> Edited {
-        let pointer = self.sides[0].info.as_ref();
-        let pointer = pointer.and_then(|i| i.graph.pointer.as_deref());
+        let graph = self.sides[0].info.as_ref().map(|i| &*i.graph);
         let side = self.desired.sides[0].clone().unwrap_or_default();
         Edited {
-            side: sorted(save::without_pointer(&side, pointer)),
+            side: sorted(save::without_cursors(&side, graph)),
             scene: self.desired.scene.clone(),
             environment: self.desired.environment.clone(),
             lights: self.desired.lights.clone(),

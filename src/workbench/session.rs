@@ -221,7 +221,7 @@ impl Workbench {
         let Some(info) = info.filter(|_| self.missing_scene().is_none()) else {
             return Ok(());
         };
-        let side = save::without_pointer(side, info.graph.pointer.as_deref());
+        let side = save::without_cursors(side, Some(&info.graph));
         let scene = self.scene.loaded.as_deref();
         let time = self.desired.clock.at;
         let experiment = save::experiment(&self.desired, &side, "session", time, scene);

@@ -30,6 +30,20 @@ pub struct TextureDecl {
     /// What its texels are, for people.
     #[serde(default)]
     pub help: String,
+    /// Names of the parts of a volume that consists of several.
+    #[serde(default)]
+    pub parts: Parts,
+}
+
+/// Names of volumes that lie in one texture, one after the other along x and along z. Each is a cube
+/// with the edge of the texture's height.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Parts {
+    /// Along x.
+    pub x: Items<String>,
+    /// Along z.
+    pub z: Items<String>,
 }
 
 impl TextureDecl {

@@ -59,6 +59,8 @@ pub struct GraphFile {
     pub caption: Option<Loc<String>>,
     /// The `Vec2` parameter that a click on the picture sets.
     pub pointer: Option<Loc<String>>,
+    /// The `Vec2` parameter that is the inspected slice of a volume.
+    pub slice: Option<Loc<String>>,
     /// Buffers that may be read as tables.
     pub tables: Items<TableDecl>,
     /// Settings worth comparing.

@@ -18,6 +18,7 @@ pub(super) struct Names {
     pub modules: Entries<String>,
     pub fit: Entries<Items<RawText>>,
     pub pointer: Option<Loc<String>>,
+    pub slice: Option<Loc<String>>,
 }
 
 /// The checks of a graph that was read, and the mistakes that they find.
@@ -84,8 +85,9 @@ impl<'g> Check<'g> {
             self.check(&item.value);
         }
         self.exprs(graph.refuse.iter().map(|r| &r.when));
-        if let Some(name) = &names.pointer {
-            self.pointer(name);
+        for (name, what) in [(&names.pointer, "pointer"), (&names.slice, "slice")] {
+            let Some(name) = name else { continue };
+            self.cursor(name, what);
         }
         if let Some(caption) = &graph.caption {
             self.caption(caption);
@@ -300,15 +302,16 @@ impl<'g> Check<'g> {
         false
     }
 
-    pub(super) fn pointer(&mut self, name: &Loc<String>) {
+    /// Checks a parameter that the window sets.
+    fn cursor(&mut self, name: &Loc<String>, what: &str) {
         let params = &self.graph.params;
         match params.param(&name.value) {
             Some(param) if param.kind == Kind::Vector(2) => {}
             Some(param) => {
                 let message = format!(
-                    "'{}' holds {} and cannot be the pointer: it must be a Vec2",
+                    "'{}' holds {} and cannot be the {what}: it must be a Vec2",
                     name.value,
-                    param.expected()
+                    param.expected(),
                 );
                 self.error(name.at, message);
             }

@@ -46,6 +46,7 @@ pub(super) fn add(all: &mut GraphFile, file: GraphFile) {
     later(&mut all.scene, file.scene);
     later(&mut all.caption, file.caption);
     later(&mut all.pointer, file.pointer);
+    later(&mut all.slice, file.slice);
 }
 
 /// Leaves out settings that included files offer and that would set a fixed parameter.

@@ -46,6 +46,7 @@ pub fn load(
         modules: file.modules,
         fit: file.fit,
         pointer: file.pointer,
+        slice: file.slice,
     };
     let stem = path.file_stem().unwrap_or_default();
     let graph = Graph {
@@ -68,6 +69,7 @@ pub fn load(
         refuse: file.refuse.0.into_iter().map(|r| r.value).collect(),
         caption: file.caption,
         pointer: names.pointer.as_ref().map(|name| name.value.clone()),
+        slice: names.slice.as_ref().map(|name| name.value.clone()),
         tables: file.tables.0,
         compare: file.compare.0,
         views: file.views.0,

@@ -3,6 +3,7 @@
 use super::request::{LightState, RenderRequest, SideRequest};
 use crate::diagnostics::{At, Loc};
 use crate::experiment::{CameraChoice, EnvironmentChange, Experiment};
+use crate::graph::Graph;
 use crate::lab::{Lab, LabError};
 use crate::results::capture::{self, Resource, What};
 use crate::results::timers::Rows;
@@ -64,11 +65,11 @@ pub fn experiment(
     experiment
 }
 
-/// A side without where the pointer is: that is a state of the window.
-pub fn without_pointer(side: &SideRequest, pointer: Option<&str>) -> SideRequest {
+/// A side without the probed pixel and the slice: those are states of the window.
+pub fn without_cursors(side: &SideRequest, graph: Option<&Graph>) -> SideRequest {
     let mut side = side.clone();
-    side.params
-        .retain(|(name, _)| Some(name.as_str()) != pointer);
+    let is_cursor = |name: &str| graph.is_some_and(|g| g.cursors().any(|c| c == name));
+    side.params.retain(|(name, _)| !is_cursor(name));
     side
 }
 

@@ -57,11 +57,8 @@ impl Run<'_> {
         else {
             return;
         };
-        let pointer = self.sides[number]
-            .loaded
-            .as_ref()
-            .and_then(|l| l.graph.pointer.as_deref());
-        let desired = save::without_pointer(&desired, pointer);
+        let graph = self.sides[number].loaded.as_ref().map(|l| &*l.graph);
+        let desired = save::without_cursors(&desired, graph);
         let experiment =
             save::experiment(&self.desired, &desired, &name, self.clock.now, Some(&scene));
         let (lab, out) = (self.lab.clone(), self.out.clone());

@@ -7,11 +7,16 @@ use super::{LONG, Run, Submitted};
 use crate::graph::run::FrameTimes;
 use crate::lab::LabError;
 use crate::workbench::desired::request::LightState;
+use crate::workbench::read_back::ReadBack;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// How long an engine that is ahead waits for a window that may be hidden.
 const UNSEEN: Duration = Duration::from_millis(100);
+
+/// Time between updates of the small pictures of textures while frames are rendered: all textures
+/// are read for them.
+const THUMBNAILS: Duration = Duration::from_secs(2);
 
 impl Run<'_> {
     /// Renders the remaining frames of A and B alternately, so that neither always profits from
@@ -201,9 +206,20 @@ impl Run<'_> {
         };
         let now =
             side.frames_left == 0 || self.last_read_back.elapsed() > Duration::from_millis(150);
+        let small = side.frames_left == 0 || self.last_thumbnails.elapsed() > THUMBNAILS;
         let asked = self.desired.read_back.iter();
-        for asked in asked.filter(|asked| now && asked.side() == number) {
-            self.last_read_back = Instant::now();
+        for asked in asked.filter(|asked| asked.side() == number) {
+            if matches!(asked, ReadBack::Thumbnail(_)) {
+                if !small {
+                    continue;
+                }
+                self.last_thumbnails = Instant::now();
+            } else {
+                if !now {
+                    continue;
+                }
+                self.last_read_back = Instant::now();
+            }
             if let Some(content) = asked.read(session)? {
                 self.out.send(Report::Content(content));
             }

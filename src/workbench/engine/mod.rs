@@ -256,6 +256,7 @@ struct Run<'a> {
     restarts: bool,
     renderdoc: bool,
     last_read_back: Instant,
+    last_thumbnails: Instant,
     last_rendered: Instant,
     /// Whether the next frame had to wait for the window.
     waited: bool,
@@ -472,6 +473,7 @@ impl<'a> Run<'a> {
             restarts: false,
             renderdoc: false,
             last_read_back: Instant::now(),
+            last_thumbnails: Instant::now(),
             last_rendered: Instant::now(),
             waited: false,
         }

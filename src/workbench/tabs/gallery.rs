@@ -155,7 +155,7 @@ impl Workbench {
                 "there is nothing to save yet: no graph has been built".into(),
             ));
         };
-        let side = save::without_pointer(side, info.graph.pointer.as_deref());
+        let side = save::without_cursors(side, Some(&info.graph));
         let (time, scene) = (self.shown_time(), self.scene.loaded.as_deref());
         let experiment = save::experiment(&self.desired, &side, &name, time, scene);
         let path = self.experiment_path(&name);

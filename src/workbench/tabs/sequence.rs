@@ -165,7 +165,7 @@ impl Workbench {
         let (Some(side), Some(info)) = (&self.desired.sides[0], &self.sides[0].info) else {
             return Err(LabError::Request("no graph has been built yet".into()));
         };
-        let side = save::without_pointer(side, info.graph.pointer.as_deref());
+        let side = save::without_cursors(side, Some(&info.graph));
         let scene = self.scene.loaded.as_deref();
         let mut experiment = save::experiment(&self.desired, &side, "sequence", 0.0, scene);
         let scene = PathBuf::from(&experiment.scene);

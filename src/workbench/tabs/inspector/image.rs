@@ -31,6 +31,19 @@ pub struct Tone {
     pub stops: f32,
     /// No transfer function; else that of sRGB, for linear values.
     pub raw: bool,
+    /// Texels that are marked.
+    pub marks: Marks,
+    /// Whether colours, premultiplied by alpha, lie over a checkerboard.
+    pub checkerboard: bool,
+}
+
+/// Texels that are marked by a colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Marks {
+    /// A channel is below zero.
+    pub negative: bool,
+    /// A channel is above white.
+    pub clipped: bool,
 }
 
 impl Default for Tone {
@@ -41,6 +54,8 @@ impl Default for Tone {
             high: 1.0,
             stops: 0.0,
             raw: false,
+            marks: Marks::default(),
+            checkerboard: false,
         }
     }
 }
@@ -63,6 +78,14 @@ pub struct Decoded {
 const NAN: [u8; 4] = [255, 0, 255, 255];
 /// Infinite texels.
 const INFINITE: [u8; 4] = [0, 255, 255, 255];
+/// Texels below zero, where these are marked.
+pub const NEGATIVE: [u8; 4] = [40, 90, 255, 255];
+/// Texels above white, where these are marked.
+pub const CLIPPED: [u8; 4] = [255, 60, 40, 255];
+/// Grey levels of the checkerboard, 0 to 1.
+const SQUARES: [f32; 2] = [0.32, 0.46];
+/// Edge of a square, texels.
+const SQUARE: usize = 4;
 
 impl Decoded {
     /// Decodes.
@@ -81,14 +104,35 @@ impl Decoded {
     /// RGBA, 8 bits each; NaN is magenta, infinity cyan.
     pub fn image(&self, tone: &Tone) -> Vec<u8> {
         let mut out = vec![0; self.floats.len() * 4];
-        out.par_chunks_mut(4 << 12)
-            .zip(self.floats.par_chunks(1 << 12))
-            .for_each(|(out, floats)| {
-                for (out, v) in out.chunks_exact_mut(4).zip(floats) {
-                    out.copy_from_slice(&pixel(v, tone, self.format.count));
+        let width = self.size[0].max(1) as usize;
+        out.par_chunks_mut(4 * width)
+            .zip(self.floats.par_chunks(width))
+            .enumerate()
+            .for_each(|(y, (out, floats))| {
+                for (x, (out, v)) in out.chunks_exact_mut(4).zip(floats).enumerate() {
+                    let square = SQUARES[(x / SQUARE + y / SQUARE) % 2];
+                    out.copy_from_slice(&pixel(v, tone, self.format.count, square));
                 }
             });
         out
+    }
+
+    /// Texels with a shown channel below zero, and above white.
+    pub fn marked(&self, tone: &Tone) -> [usize; 2] {
+        let white = tone.low + (tone.high - tone.low) * (-tone.stops).exp2();
+        let count = |v: &[f32; 4]| {
+            let shown = chosen(v, tone.channel, self.format.count);
+            let clipped = match tone.low <= tone.high {
+                true => shown.iter().any(|x| *x > white),
+                false => shown.iter().any(|x| *x < white),
+            };
+            [
+                usize::from(shown.iter().any(|x| *x < 0.0)),
+                usize::from(clipped),
+            ]
+        };
+        let sum = |a: [usize; 2], b: [usize; 2]| [a[0] + b[0], a[1] + b[1]];
+        self.floats.par_iter().map(count).reduce(|| [0, 0], sum)
     }
 
     /// The channels at a texel, as exactly as they are stored.
@@ -179,7 +223,8 @@ fn chosen(v: &[f32; 4], channel: Channel, count: u32) -> [f32; 3] {
     }
 }
 
-fn pixel(v: &[f32; 4], tone: &Tone, count: u32) -> [u8; 4] {
+/// A texel as RGBA. `square`: grey of the checkerboard there.
+fn pixel(v: &[f32; 4], tone: &Tone, count: u32, square: f32) -> [u8; 4] {
     let shown = chosen(v, tone.channel, count);
     if shown.iter().any(|x| x.is_nan()) {
         return NAN;
@@ -194,10 +239,20 @@ fn pixel(v: &[f32; 4], tone: &Tone, count: u32) -> [u8; 4] {
     } else {
         tone.stops.exp2() / range
     };
+    if tone.marks.negative && shown.iter().any(|x| *x < 0.0) {
+        return NEGATIVE;
+    }
+    if tone.marks.clipped && shown.iter().any(|x| (x - tone.low) * scale > 1.0) {
+        return CLIPPED;
+    }
+    let behind = match tone.checkerboard && count == 4 && tone.channel == Channel::Rgb {
+        true => square * (1.0 - v[3].clamp(0.0, 1.0)),
+        false => 0.0,
+    };
     let level = |x: f32| {
         let x = ((x - tone.low) * scale).clamp(0.0, 1.0);
         let x = if tone.raw { x } else { encode(x) };
-        (x * 255.0 + 0.5) as u8
+        ((x + behind).min(1.0) * 255.0 + 0.5) as u8
     };
     [level(shown[0]), level(shown[1]), level(shown[2]), 255]
 }
@@ -251,7 +306,38 @@ pub(super) mod tests {
             high,
             stops,
             raw: true,
+            ..Tone::default()
         }
+    }
+
+    #[test]
+    fn marks_and_the_checkerboard() {
+        let d = floats(&[
+            [-0.1, 0.5, 0.5, 1.0],
+            [0.5, 1.1, 0.5, 1.0],
+            [0.0, 0.0, 0.0, 0.0],
+            [0.5, 0.5, 0.5, 1.0],
+            [0.0, 0.0, 0.0, 0.0],
+        ]);
+        let marks = Marks {
+            negative: true,
+            clipped: true,
+        };
+        let shown = Tone {
+            marks,
+            checkerboard: true,
+            ..tone(Channel::Rgb, 0.0, 1.0, 0.0)
+        };
+        let grey = |square: f32| (square * 255.0 + 0.5) as u8;
+        let [dark, bright] = SQUARES.map(|s| [grey(s), grey(s), grey(s), 255]);
+        let expected = [NEGATIVE, CLIPPED, dark, [128, 128, 128, 255], bright].concat();
+        assert_eq!(d.image(&shown), expected);
+        // Alpha alone, and opaque formats, have no checkerboard.
+        let alpha = Tone {
+            channel: Channel::One(3),
+            ..shown
+        };
+        assert_eq!(d.image(&alpha)[8..12], [0, 0, 0, 255]);
     }
 
     #[test]

@@ -2,24 +2,28 @@
 
 mod histogram;
 mod image;
+mod parts;
 mod statistics;
+mod strip;
 mod viewport;
 mod views;
 mod work;
 
 use super::Tab;
+use crate::graph::param::Value;
 use crate::graph::plan::TexturePlan;
 use crate::lab::Texels;
 use crate::vulkan::format::Channels;
 use crate::workbench::background::Wake;
-use crate::workbench::desired::request::InspectTarget;
+use crate::workbench::desired::edit;
+use crate::workbench::desired::request::{InspectTarget, SideRequest};
 use crate::workbench::dock::Pane;
 use crate::workbench::engine::report::{GraphInfo, Report};
 use crate::workbench::panel::control::{named, spin};
 use crate::workbench::read_back::{Content, ReadBack};
 use crate::workbench::{INSPECTOR, Workbench};
 use egui::{DragValue, Slider, TextureId, Ui, Vec2};
-use image::{Channel, Tone};
+use image::{CLIPPED, Channel, Marks, NEGATIVE, Tone};
 use std::sync::Arc;
 use work::{Done, Source, Work};
 
@@ -33,6 +37,7 @@ pub struct Inspector {
     shown: Option<Done>,
     pan_zoom: viewport::PanZoom,
     before: views::Before,
+    strip: strip::Strip,
 }
 
 impl Default for Inspector {
@@ -52,6 +57,7 @@ impl Default for Inspector {
             shown: None,
             pan_zoom: viewport::PanZoom::default(),
             before: views::Before::default(),
+            strip: strip::Strip::default(),
         }
     }
 }
@@ -69,6 +75,11 @@ impl Tab for Inspector {
             let volume = workbench.is_volume(target);
             let (inspector, wake) = (&mut workbench.tabs.inspector, &workbench.setup.wake);
             inspector.note(target, texels.clone(), volume, wake);
+        }
+        if let Report::Content(Content::Thumbnail(target, texels)) = report {
+            let volume = workbench.is_volume(target);
+            let (inspector, wake) = (&mut workbench.tabs.inspector, &workbench.setup.wake);
+            inspector.strip.note(target, texels.clone(), volume, wake);
         }
     }
 
@@ -97,16 +108,26 @@ impl Inspector {
         };
     }
 
+    /// Opens a mip, layer or slice of a texture, with a tone or one that fits.
+    fn open_part(&mut self, target: InspectTarget, tone: Option<Tone>) {
+        self.open(target.side, target.texture.clone());
+        self.target = target;
+        self.fit = tone.is_none();
+        self.tone = tone.unwrap_or(self.tone);
+    }
+
     /// Takes in requested texels. Texels of a volume are a slice.
     fn note(&mut self, target: &InspectTarget, texels: Arc<Texels>, volume: bool, wake: &Wake) {
         // Results of an earlier choice would only delay the present one.
         if target.texture != self.target.texture || target.side != self.target.side {
             return;
         }
-        let fit = std::mem::take(&mut self.fit);
-        if fit {
-            self.tone = first_tone(&texels, self.tone);
+        let first = std::mem::take(&mut self.fit);
+        if first {
+            self.tone = first_tone(&texels, volume, self.tone);
         }
+        // Eight bits have a range of their own.
+        let fit = first && !is_bytes(&texels);
         let source = Source::New(target.clone(), texels, volume);
         self.work.start(source, self.tone, fit, wake);
     }
@@ -141,7 +162,7 @@ impl Inspector {
 }
 
 /// How texels of that format are shown at first.
-fn first_tone(texels: &Texels, tone: Tone) -> Tone {
+fn first_tone(texels: &Texels, volume: bool, tone: Tone) -> Tone {
     let f = texels.format;
     let channel = if f.count == 1 {
         Channel::One(0)
@@ -154,8 +175,18 @@ fn first_tone(texels: &Texels, tone: Tone) -> Tone {
         channel,
         raw,
         stops: 0.0,
+        low: 0.0,
+        high: 1.0,
+        // Black light and empty cells would look alike.
+        checkerboard: volume && f.count == 4,
         ..tone
     }
+}
+
+/// Whether channels are fractions in eight bits.
+fn is_bytes(texels: &Texels) -> bool {
+    let f = &texels.format;
+    f.channels == Channels::Float && f.bytes == f.count
 }
 
 impl Workbench {
@@ -239,6 +270,11 @@ impl Workbench {
         }
         let plan = info.textures.get(index)?.clone();
         choose_part(ui, &plan, target);
+        if plan.volume {
+            self.show_slice(ui, info, &plan);
+        }
+        let inspector = &mut self.tabs.inspector;
+        let target = &inspector.target;
         let shown = inspector.shown.as_ref();
         let waits = shown.is_none_or(|s| s.decoded.target != *target);
         ui.horizontal(|ui| {
@@ -248,11 +284,47 @@ impl Workbench {
                 ui.weak("…");
             }
             large = !dock_shows && ui.button("Show large").clicked();
+            self.strip_buttons(ui);
         });
         if large {
             self.dock.open(Pane::Texture);
         }
         Some(plan)
+    }
+
+    /// A switch that draws the slice over the picture.
+    fn show_slice(&mut self, ui: &mut Ui, info: &GraphInfo, plan: &TexturePlan) {
+        let slice = info.graph.slice.as_ref();
+        let Some(param) = slice.and_then(|name| info.graph.params.param(name)) else {
+            return;
+        };
+        let target = &self.tabs.inspector.target;
+        let is_of = |side: &SideRequest| {
+            let value = side.params.iter().find(|p| p.0 == param.name).map(|p| &p.1);
+            matches!(value, Some(Value::Vector(v)) if v.first().is_some_and(|x| *x >= 0.0))
+        };
+        let was_on = self.desired.sides[target.side].as_ref().is_some_and(is_of);
+        let mut on = was_on;
+        ui.checkbox(&mut on, "Show in the picture")
+            .on_hover_text("Draws the slice over the picture: lines where it cuts surfaces, a tint in front of them");
+        if !(on || was_on) {
+            return;
+        }
+        let extent = plan.mip_extent(target.mip);
+        // Parts along x are the same place; those along z are one volume behind the other.
+        let edge = if target.axis == 0 {
+            extent[1]
+        } else {
+            extent[target.axis]
+        };
+        let middle = f64::from(target.slice % edge.max(1)) + 0.5;
+        let place = match on {
+            true => vec![target.axis as f64, middle / f64::from(edge.max(1))],
+            false => vec![-1.0; 2],
+        };
+        for side in self.desired.sides.iter_mut().flatten() {
+            edit::set(side, param, &Value::Vector(place.clone()));
+        }
     }
 
     fn texture_menu(&mut self, ui: &mut Ui, info: &GraphInfo, names: &[&str]) {
@@ -320,6 +392,12 @@ impl Workbench {
             "The values are light and are encoded for the screen (sRGB); else they are shown as they are. rgba8_srgb holds encoded values",
         );
         tone.raw = !encoded;
+        if plan.format.count == 4 {
+            ui.checkbox(&mut tone.checkerboard, "alpha over a checkerboard")
+                .on_hover_text("Colours are taken as premultiplied by alpha");
+        }
+        let marked = self.tabs.inspector.shown.as_ref().map(|s| s.marked);
+        marks(ui, &mut tone.marks, marked.unwrap_or_default());
         self.tabs
             .inspector
             .show_again(before, fit, &self.setup.wake);
@@ -336,7 +414,8 @@ impl Workbench {
                 format!("{nan} values are not a number (magenta), {infinite} are infinite (cyan)");
             ui.colored_label(ui.visuals().error_fg_color, text);
         }
-        histogram::show(ui, done);
+        let (before, mut tone) = (self.tabs.inspector.tone, self.tabs.inspector.tone);
+        histogram::show(ui, done, &mut tone);
         egui::Grid::new("values")
             .num_columns(6)
             .striped(true)
@@ -365,7 +444,26 @@ impl Workbench {
                     ui.end_row();
                 }
             });
+        self.tabs.inspector.tone = tone;
+        let inspector = &mut self.tabs.inspector;
+        inspector.show_again(before, false, &self.setup.wake);
     }
+}
+
+/// Switches that mark texels, with their numbers.
+fn marks(ui: &mut Ui, marks: &mut Marks, [negative, clipped]: [usize; 2]) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Mark:");
+        let color = |[r, g, b, _]: [u8; 4]| egui::Color32::from_rgb(r, g, b);
+        for (on, name, count, mark) in [
+            (&mut marks.negative, "negative", negative, NEGATIVE),
+            (&mut marks.clipped, "above white", clipped, CLIPPED),
+        ] {
+            ui.checkbox(on, format!("{name} ({count})"));
+            let (rect, _) = ui.allocate_exact_size(Vec2::splat(10.0), egui::Sense::hover());
+            ui.painter().rect_filled(rect, 2.0, color(mark));
+        }
+    });
 }
 
 /// Mip, layer or slice of a texture.

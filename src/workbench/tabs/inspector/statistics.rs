@@ -113,6 +113,14 @@ pub fn histogram(d: &Decoded, low: f32, high: f32) -> Vec<[u32; BINS]> {
     all
 }
 
+/// First and last value of the histogram: all finite values that are shown, and the range.
+pub fn span(tone: &Tone, values: &[Values]) -> [f32; 2] {
+    let all = fit(tone, values);
+    let low = all.low.min(all.high).min(tone.low).min(tone.high);
+    let high = all.low.max(all.high).max(tone.low).max(tone.high);
+    [low, high]
+}
+
 /// The range of the finite values that are shown.
 pub fn fit(tone: &Tone, values: &[Values]) -> Tone {
     let shown: Vec<&Values> = match tone.channel {

@@ -1,7 +1,7 @@
 //! The inspected texture in the viewport: nearest texels, whole steps of size, values under the
 //! pointer.
 
-use super::{INSPECTOR, Workbench, image};
+use super::{INSPECTOR, Workbench, image, parts, strip};
 use crate::workbench::picture::view;
 use crate::workbench::theme;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2};
@@ -70,7 +70,20 @@ fn step(zoom: f32, up: bool) -> f32 {
 impl Workbench {
     /// Shows the texels: the wheel changes the size, drags move, a double click shows all.
     pub(crate) fn inspected(&mut self, ui: &mut Ui, textures: &[TextureId]) {
-        let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::click_and_drag());
+        let side = self.tabs.inspector.target.side.min(1);
+        let mut size = ui.available_size();
+        let info = self.sides[side].info.clone();
+        let strip = info.filter(|_| self.tabs.inspector.strip.is_shown());
+        if strip.is_some() {
+            size.y -= strip::HEIGHT;
+        }
+        let (response, painter) = ui.allocate_painter(size, Sense::click_and_drag());
+        if let Some(info) = strip {
+            let corner = response.rect.left_bottom();
+            let row = Rect::from_min_size(corner, Vec2::new(size.x, strip::HEIGHT));
+            let builder = egui::UiBuilder::new().max_rect(row.shrink(4.0));
+            ui.scope_builder(builder, |ui| self.texture_strip(ui, &info));
+        }
         let area = response.rect;
         let scale = ui.ctx().pixels_per_point();
         self.read_texture();
@@ -94,13 +107,25 @@ impl Workbench {
         self.under_pointer(&painter, response.hover_pos(), shown, texel);
         // The shown texture, because the requested one may follow.
         let target = &done.decoded.target;
-        let name = format!(
+        let mut name = format!(
             "{} {}  mip {}  × {:.3}",
             ["A", "B"][target.side.min(1)],
             target.texture,
             target.mip,
             texel * scale
         );
+        let info = self.sides[target.side.min(1)].info.as_ref();
+        let number = info.and_then(|info| info.graph.texture(&target.texture));
+        if let (Some(info), Some(number)) = (info, number)
+            && let Some(plan) = info.textures.get(number).filter(|plan| plan.volume)
+        {
+            let names = &info.graph.textures[number].1.value.parts;
+            let edge = plan.mip_extent(target.mip)[1];
+            parts::draw(&painter, names, target, edge, (shown, done.decoded.size));
+            if let Some(part) = parts::of_slice(names, target, edge) {
+                name = format!("{name}  {part}");
+            }
+        }
         note(&painter, area, area.left_top() + Vec2::new(6.0, 6.0), &name);
     }
 

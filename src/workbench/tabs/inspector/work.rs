@@ -22,8 +22,12 @@ pub struct Done {
     pub decoded: Arc<Decoded>,
     /// Statistics of each channel.
     pub values: Arc<Vec<Values>>,
-    /// Histogram of each channel, over the tone's range.
+    /// Histogram of each channel.
     pub histogram: Vec<[u32; BINS]>,
+    /// First and last value of the histogram: all finite values that are shown, and the range.
+    pub span: [f32; 2],
+    /// Texels below zero and above white.
+    pub marked: [usize; 2],
     /// The tone of the picture.
     pub tone: Tone,
     /// Whether the range was made to fit.
@@ -87,12 +91,16 @@ fn run(source: Source, tone: Tone, fit: bool) -> Done {
     } else {
         tone
     };
-    let histogram = statistics::histogram(&decoded, tone.low, tone.high);
+    let span = statistics::span(&tone, &values);
+    let histogram = statistics::histogram(&decoded, span[0], span[1]);
+    let marked = decoded.marked(&tone);
     let image = Arc::new(decoded.image(&tone));
     Done {
         decoded,
         values,
         histogram,
+        span,
+        marked,
         tone,
         fitted: fit,
         image,

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 /// Height of a mark on a bar that is cut off, points.
 const CUT: f32 = 3.0;
 /// Width of the labels on the right, in characters.
-const LABELS: f32 = 9.0;
+const LABELS: f32 = 11.0;
 
 /// Longest time that new frames wait for their bars: a mesh takes about a millisecond of the CPU.
 const AGE: Duration = Duration::from_millis(100);
