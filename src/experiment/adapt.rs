@@ -31,7 +31,17 @@ impl Experiment {
     pub fn adapt_scene(&self, scene: &mut Scene) -> Result<(), ExperimentError> {
         let mut errors = Vec::new();
         for (name, change) in &self.lights {
+            if change.removes() {
+                scene.lights.retain(|l| l.name != name.value);
+                continue;
+            }
             let mut known = false;
+            if let Some(added) = change.added(&name.value) {
+                match scene.lights.iter_mut().find(|l| l.name == name.value) {
+                    Some(light) => *light = added,
+                    None => scene.lights.push(added),
+                }
+            }
             for light in scene.lights.iter_mut().filter(|l| l.name == name.value) {
                 known = true;
                 if let Err(message) = change.apply(light) {

@@ -93,22 +93,7 @@ pub fn resolved_text(
             at: At::default(),
         }
     });
-    // A change affects all lights with its name, so only unique names can be written.
-    let single = |name: &str| {
-        !name.is_empty() && scene.lights.iter().filter(|l| l.name == name).count() == 1
-    };
-    let lights = scene.lights.iter().filter(|l| single(&l.name));
-    resolved.lights = lights
-        .map(|l| {
-            (
-                Loc {
-                    value: l.name.clone(),
-                    at: At::default(),
-                },
-                l.fields(),
-            )
-        })
-        .collect();
+    resolved.lights = resolved_lights(experiment, scene);
     let wanted = Wanted {
         experiment: &resolved,
         path,
@@ -118,6 +103,30 @@ pub fn resolved_text(
     let text = fresh(&wanted);
     read_back(&resolved, &params, defaults, path, &text)?;
     Ok(text)
+}
+
+/// Every light of a scene, and the removals that led to it.
+fn resolved_lights(experiment: &Experiment, scene: &Scene) -> Vec<(Loc<String>, LightFields)> {
+    let changes = experiment.lights.iter();
+    let removed = changes.clone().filter(|c| c.1.removes()).cloned();
+    let is_added = |name: &str| {
+        let mut changes = changes.clone().rev();
+        changes.any(|(n, c)| n.value == name && c.added(name).is_some())
+    };
+    // A change affects all lights with its name, so only unique names can be written.
+    let single = |name: &str| {
+        !name.is_empty() && scene.lights.iter().filter(|l| l.name == name).count() == 1
+    };
+    let lights = scene.lights.iter().filter(|l| single(&l.name)).map(|l| {
+        let change = if is_added(&l.name) {
+            l.addition()
+        } else {
+            l.fields()
+        };
+        let (value, at) = (l.name.clone(), At::default());
+        (Loc { value, at }, change)
+    });
+    removed.chain(lights).collect()
 }
 
 fn exists(path: &Path) -> ExperimentError {
@@ -173,14 +182,13 @@ fn read_back(
     }
 }
 
+/// Changes by name, after those that add lights: the order of the scene's lights depends on these.
 fn changes(experiment: &Experiment) -> Vec<(&str, &LightFields)> {
-    let mut list: Vec<_> = experiment
-        .lights
-        .iter()
-        .map(|(name, change)| (name.value.as_str(), change))
-        .collect();
-    list.sort_by_key(|l| l.0);
-    list
+    let changes = experiment.lights.iter();
+    let changes = changes.map(|(name, change)| (name.value.as_str(), change));
+    let (added, mut others): (Vec<_>, Vec<_>) = changes.partition(|(n, c)| c.added(n).is_some());
+    others.sort_by_key(|l| l.0);
+    [added, others].concat()
 }
 
 pub(super) fn same_environment(a: &Experiment, b: &Experiment) -> bool {

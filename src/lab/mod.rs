@@ -19,6 +19,7 @@ mod workspace;
 pub use interface::{environment, load};
 pub use parts::{focus_of, parts_of};
 pub use scene::SceneGpu;
+pub(crate) use session::light_counts;
 pub use texels::Texels;
 pub use view::Viewpoint;
 pub use workspace::{Loaded, Workspace};

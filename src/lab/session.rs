@@ -174,11 +174,7 @@ impl Session {
     /// frame on. False, and nothing changes, with another number of lights or shadow maps: that
     /// needs a new session.
     pub fn set_lights(&mut self, lights: &[Light], sky: Vec3) -> bool {
-        let same = lights.len() == self.scene.lights.len()
-            && view::shadow_view_count(lights) == view::shadow_view_count(&self.scene.lights)
-            && view::directional_view_count(lights)
-                == view::directional_view_count(&self.scene.lights)
-            && view::area_light_count(lights) == view::area_light_count(&self.scene.lights);
+        let same = light_counts(lights) == light_counts(&self.scene.lights);
         if same {
             self.light_updates = self.scene_gpu.set_lights(lights, sky);
         }
@@ -373,6 +369,16 @@ impl Session {
     pub fn scene_bytes(&self) -> u64 {
         self.scene_gpu.bytes
     }
+}
+
+/// Numbers of lights and shadow maps that a session is made for; see [`Session::set_lights`].
+pub(crate) fn light_counts(lights: &[Light]) -> [u32; 4] {
+    [
+        u32::try_from(lights.len()).unwrap_or(u32::MAX),
+        view::shadow_view_count(lights),
+        view::directional_view_count(lights),
+        view::area_light_count(lights),
+    ]
 }
 
 fn not_kept(name: &str) -> LabError {

@@ -140,7 +140,7 @@ pub(super) fn lights(
             kind: u32::try_from(light.kind.index()).unwrap_or(u32::MAX),
             direction: light.direction.to_array(),
             shadow_view: if light.shadow { first } else { -1 },
-            color: light.color.to_array(),
+            color: light.emitted().to_array(),
             of_sky: u32::from(number as usize >= own),
             side: side.to_array(),
             cos_inner: inner.cos(),

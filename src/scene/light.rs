@@ -1,13 +1,13 @@
 //! Lights: the kinds that there are and, in one table, the fields of each. Scene files,
 //! experiments, the window, summaries and hashes follow from them.
 
-use std::fmt;
+mod change;
+mod read;
 
 use glam::{Mat4, Vec3};
-use serde::Deserialize;
-use serde::de::{Deserializer, EnumAccess, Error, MapAccess, VariantAccess, Visitor};
 
-use super::MAX_COORDINATE;
+use change::Edit;
+pub use change::LightFields;
 
 /// Emission pattern of a light, with the numbers that only this kind has.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +53,8 @@ pub struct Light {
     pub direction: Vec3,
     /// Direction of a rectangle's height; need not be orthogonal to `direction`.
     pub up: Vec3,
+    /// Whether it emits. A light that is off keeps its shadow map and its colour.
+    pub on: bool,
     /// Whether it has a shadow map.
     pub shadow: bool,
 }
@@ -67,6 +69,7 @@ impl Default for Light {
             position: Vec3::ZERO,
             direction: Vec3::NEG_Y,
             up: Vec3::Y,
+            on: true,
             shadow: true,
         }
     }
@@ -84,71 +87,74 @@ pub(crate) enum Views {
 }
 
 /// A kind of light. Its number in shaders is its place in [`KINDS`].
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub(crate) struct Kind {
     /// Name in scene files; in lower case everywhere else.
     pub name: &'static str,
-    /// Numbers that files replace.
-    template: LightKind,
-    /// Quantity of the colour.
+    /// The kind with the numbers of a new light. Scene files replace all of them.
+    pub template: LightKind,
+    /// Quantity of the colour, and its unit.
     pub color: &'static str,
+    pub unit: &'static str,
     pub views: Views,
 }
 
-const fn kind(name: &'static str, template: LightKind, color: &'static str, views: Views) -> Kind {
+const fn kind(
+    name: &'static str,
+    template: LightKind,
+    (color, unit): (&'static str, &'static str),
+    views: Views,
+) -> Kind {
     Kind {
         name,
         template,
         color,
+        unit,
         views,
     }
 }
 
-pub(crate) const KINDS: [Kind; 5] = [
+pub(crate) static KINDS: [Kind; 5] = [
     kind(
         "Directional",
         LightKind::Directional,
-        "irradiance",
+        ("irradiance", "W/m²"),
         Views::Parallel,
     ),
-    kind("Point", LightKind::Point, "intensity", Views::Cube),
+    kind(
+        "Point",
+        LightKind::Point,
+        ("intensity", "W/sr"),
+        Views::Cube,
+    ),
     kind(
         "Spot",
         LightKind::Spot {
-            inner: 0.0,
-            outer: 0.0,
+            inner: 20_f32.to_radians(),
+            outer: 35_f32.to_radians(),
         },
-        "intensity",
+        ("intensity", "W/sr"),
         Views::Cone,
     ),
     kind(
         "Rectangle",
         LightKind::Rectangle {
-            width: 0.0,
-            height: 0.0,
+            width: 1.0,
+            height: 1.0,
         },
-        "radiance",
+        ("radiance", "W/(m² sr)"),
         Views::Cube,
     ),
     kind(
         "Disc",
-        LightKind::Disc { radius: 0.0 },
-        "radiance",
+        LightKind::Disc { radius: 0.5 },
+        ("radiance", "W/(m² sr)"),
         Views::Cube,
     ),
 ];
 
-/// Names of [`KINDS`], in their order.
-static KIND_NAMES: [&str; KINDS.len()] = {
-    let mut names = [""; KINDS.len()];
-    let mut i = 0;
-    while i < KINDS.len() {
-        assert!(KINDS[i].template.index() == i, "a row is out of order");
-        names[i] = KINDS[i].name;
-        i += 1;
-    }
-    names
-};
+/// Switches of every light.
+pub(crate) const FLAGS: [&str; 2] = ["on", "shadow"];
 
 /// Quantity of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -283,6 +289,15 @@ impl LightKind {
 }
 
 impl Light {
+    /// A new light of a kind.
+    pub(crate) fn new(kind: &Kind, name: &str) -> Light {
+        Light {
+            name: name.into(),
+            kind: kind.template,
+            ..Light::default()
+        }
+    }
+
     /// The vector of that name, if this kind of light has it.
     pub(crate) fn vector(&mut self, name: &str) -> Option<&mut Vec3> {
         match name {
@@ -292,6 +307,20 @@ impl Light {
             "up" if matches!(self.kind, LightKind::Rectangle { .. }) => Some(&mut self.up),
             _ => None,
         }
+    }
+
+    /// The switch of that name, one of [`FLAGS`].
+    pub(crate) fn flag(&mut self, name: &str) -> Option<&mut bool> {
+        match name {
+            "on" => Some(&mut self.on),
+            "shadow" => Some(&mut self.shadow),
+            _ => None,
+        }
+    }
+
+    /// Emitted colour: black if the light is off.
+    pub(crate) fn emitted(&self) -> Vec3 {
+        if self.on { self.color } else { Vec3::ZERO }
     }
 
     /// Sets a number in the unit of files; false if this kind of light does not have it.
@@ -318,7 +347,24 @@ impl Light {
             .iter()
             .filter_map(|f| Some((f, f.quantity.shown(*light.kind.number(f.name)?))))
             .collect();
-        LightFields { vectors, numbers }
+        let flags = FLAGS
+            .iter()
+            .filter_map(|name| Some((*name, *light.flag(name)?)))
+            .collect();
+        LightFields {
+            edit: None,
+            vectors,
+            numbers,
+            flags,
+        }
+    }
+
+    /// The change that adds this light to a scene without it.
+    pub(crate) fn addition(&self) -> LightFields {
+        LightFields {
+            edit: Some(Edit::Add(self.kind.row())),
+            ..self.fields()
+        }
     }
 
     /// Moves it into another space. Its extent grows with the largest scale of the transform, as in
@@ -366,269 +412,4 @@ fn scale_of(frame: &Mat4) -> f32 {
     axes.map(|axis| axis.truncate().length())
         .into_iter()
         .fold(0.0, f32::max)
-}
-
-/// Fields of a light as files have them. In an experiment, those that are left out keep the scene's
-/// value.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct LightFields {
-    vectors: Vec<(&'static Field, Vec3)>,
-    /// Angles in degrees, lengths in metres.
-    numbers: Vec<(&'static Field, f64)>,
-}
-
-impl LightFields {
-    /// Direction of the height, of a kind that has one.
-    pub(crate) fn up(&self) -> Option<Vec3> {
-        self.vectors.iter().find(|v| v.0.name == "up").map(|v| v.1)
-    }
-
-    fn names(&self) -> impl Iterator<Item = &'static Field> {
-        let numbers = self.numbers.iter().map(|n| n.0);
-        self.vectors.iter().map(|v| v.0).chain(numbers)
-    }
-
-    /// The vectors.
-    pub(crate) fn vectors(&self) -> &[(&'static Field, Vec3)] {
-        &self.vectors
-    }
-
-    /// The numbers, in the unit of files.
-    pub(crate) fn numbers(&self) -> &[(&'static Field, f64)] {
-        &self.numbers
-    }
-
-    /// The fields that differ from those of another light.
-    pub(crate) fn changed(mut self, other: &LightFields) -> LightFields {
-        self.vectors.retain(|field| !other.vectors.contains(field));
-        self.numbers.retain(|field| !other.numbers.contains(field));
-        self
-    }
-
-    /// Whether all values are allowed, for any kind of light.
-    pub(crate) fn check(&self) -> Result<(), String> {
-        for (field, v) in &self.vectors {
-            let rule = match field.quantity {
-                Quantity::Color if !v.is_finite() || v.min_element() < 0.0 => {
-                    "finite and not negative".into()
-                }
-                Quantity::Direction if v.try_normalize().is_none() => "finite and not zero".into(),
-                Quantity::Position if !v.is_finite() || v.abs().max_element() > MAX_COORDINATE => {
-                    format!("within {MAX_COORDINATE:e} m of the origin")
-                }
-                _ => continue,
-            };
-            return Err(format!("its {} must be {rule}", field.name));
-        }
-        for (field, x) in &self.numbers {
-            if !field.allows(*x) {
-                let ((least, most), unit) = (field.range, field.quantity.unit());
-                return Err(format!(
-                    "its {} must be {least} to {most} {unit}",
-                    field.name
-                ));
-            }
-        }
-        Ok(())
-    }
-
-    /// Changes a light.
-    ///
-    /// # Errors
-    /// Fields of other kinds of lights; a spot with an inner cone that is not inside its outer one.
-    pub(crate) fn apply(&self, light: &mut Light) -> Result<(), String> {
-        let lacks = |light: &Light, field: &Field| {
-            let kind = light.kind.row().name.to_lowercase();
-            Err(format!("is a {kind} light, which has no `{}`", field.name))
-        };
-        for (field, value) in &self.vectors {
-            let Some(vector) = light.vector(field.name) else {
-                return lacks(light, field);
-            };
-            // Unit vectors keep their bits, so that a written direction is read back unchanged.
-            *vector = match field.quantity {
-                Quantity::Direction if !value.is_normalized() => value.normalize_or(Vec3::NEG_Y),
-                _ => *value,
-            };
-        }
-        for (field, value) in &self.numbers {
-            if !light.set_number(field, *value) {
-                return lacks(light, field);
-            }
-        }
-        match light.kind {
-            LightKind::Spot { inner, outer } if inner >= outer => {
-                Err("needs an inner angle that is less than its outer one".into())
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// The fields as text of an experiment.
-    pub(crate) fn to_text(&self) -> String {
-        let vector =
-            |(f, v): &(&Field, Vec3)| format!("{}: ({:?}, {:?}, {:?})", f.name, v.x, v.y, v.z);
-        let number = |(f, x): &(&Field, f64)| format!("{}: {x:?}", f.name);
-        let vectors = self.vectors.iter().map(vector);
-        let fields: Vec<String> = vectors.chain(self.numbers.iter().map(number)).collect();
-        format!("({})", fields.join(", "))
-    }
-}
-
-/// Names of the fields in experiments.
-static IN_EXPERIMENTS: [&str; FIELDS.len()] = {
-    let mut names = [""; FIELDS.len()];
-    let mut i = 0;
-    while i < FIELDS.len() {
-        names[i] = FIELDS[i].name;
-        i += 1;
-    }
-    names
-};
-
-/// Names of the fields in scene files, and the two of every light.
-static IN_SCENES: [&str; FIELDS.len() + 2] = {
-    let mut names = ["name"; FIELDS.len() + 2];
-    let mut i = 0;
-    while i < FIELDS.len() {
-        names[i + 1] = FIELDS[i].file;
-        i += 1;
-    }
-    names[FIELDS.len() + 1] = "shadow";
-    names
-};
-
-/// A key of a struct.
-struct Key(String);
-
-impl<'de> Deserialize<'de> for Key {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Name;
-        impl Visitor<'_> for Name {
-            type Value = Key;
-
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("the name of a field")
-            }
-
-            fn visit_str<E: Error>(self, name: &str) -> Result<Key, E> {
-                Ok(Key(name.to_owned()))
-            }
-        }
-        deserializer.deserialize_identifier(Name)
-    }
-}
-
-/// Reads the fields of a light; names are those of scene files or those of experiments.
-struct ReadFields {
-    in_scene: bool,
-}
-
-#[derive(Default)]
-struct Read {
-    name: String,
-    shadow: Option<bool>,
-    fields: LightFields,
-}
-
-impl<'de> Visitor<'de> for ReadFields {
-    type Value = Read;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("the fields of a light")
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Read, A::Error> {
-        let mut read = Read::default();
-        let mut seen: Vec<String> = Vec::new();
-        let names: &'static [&'static str] = if self.in_scene {
-            &IN_SCENES
-        } else {
-            &IN_EXPERIMENTS
-        };
-        while let Some(Key(key)) = map.next_key()? {
-            let Some(name) = names.iter().find(|name| **name == key) else {
-                return Err(Error::unknown_field(&key, names));
-            };
-            if seen.contains(&key) {
-                return Err(Error::duplicate_field(name));
-            }
-            seen.push(key);
-            let of = |f: &&Field| *name == if self.in_scene { f.file } else { f.name };
-            match (*name, FIELDS.iter().find(of)) {
-                (_, Some(field)) => match field.quantity {
-                    // Radians are rounded once more than in experiments, so that scenes of older
-                    // versions keep their hash.
-                    Quantity::Angle if self.in_scene => {
-                        let degrees: f32 = map.next_value()?;
-                        let exact = field.quantity.shown(degrees.to_radians());
-                        read.fields.numbers.push((field, exact));
-                    }
-                    Quantity::Angle | Quantity::Length => {
-                        read.fields.numbers.push((field, map.next_value()?));
-                    }
-                    _ => read.fields.vectors.push((field, map.next_value()?)),
-                },
-                ("shadow", None) => read.shadow = Some(map.next_value()?),
-                (_, None) => read.name = map.next_value()?,
-            }
-        }
-        // In the order of the table, whatever that of the file: equal fields are then equal.
-        let place = |field: &Field| FIELDS.iter().position(|f| f == field);
-        read.fields.vectors.sort_by_key(|v| place(v.0));
-        read.fields.numbers.sort_by_key(|n| place(n.0));
-        Ok(read)
-    }
-}
-
-impl<'de> Deserialize<'de> for LightFields {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let fields = ReadFields { in_scene: false };
-        let read = deserializer.deserialize_struct("Light", &IN_EXPERIMENTS, fields)?;
-        Ok(read.fields)
-    }
-}
-
-impl<'de> Deserialize<'de> for Light {
-    /// A light of a scene file: the kind with all its fields.
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct OfKind;
-        impl<'de> Visitor<'de> for OfKind {
-            type Value = Light;
-
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                write!(f, "a light: {}", KIND_NAMES.join(", "))
-            }
-
-            fn visit_enum<A: EnumAccess<'de>>(self, data: A) -> Result<Light, A::Error> {
-                let (Key(name), fields) = data.variant()?;
-                let kind = KINDS
-                    .iter()
-                    .find(|kind| kind.name == name)
-                    .ok_or_else(|| Error::unknown_variant(&name, &KIND_NAMES))?;
-                let read = fields.struct_variant(&IN_SCENES, ReadFields { in_scene: true })?;
-                light(kind, read)
-            }
-        }
-        deserializer.deserialize_enum("Light", &KIND_NAMES, OfKind)
-    }
-}
-
-fn light<E: Error>(kind: &Kind, read: Read) -> Result<Light, E> {
-    let mut light = Light {
-        name: read.name,
-        kind: kind.template,
-        shadow: read.shadow.ok_or_else(|| E::missing_field("shadow"))?,
-        ..Light::default()
-    };
-    for missing in light.fields().names().filter(|f| f.name != "up") {
-        if !read.fields.names().any(|given| given == missing) {
-            return Err(E::missing_field(missing.file));
-        }
-    }
-    let named = |separator: &str, why: String| E::custom(format!("this light{separator}{why}"));
-    read.fields.check().map_err(|why| named(": ", why))?;
-    let placed = read.fields.apply(&mut light);
-    placed.map_err(|why| named(" ", why))?;
-    Ok(light)
 }

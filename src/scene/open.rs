@@ -67,6 +67,7 @@ fn open_watched(
                 return loaded
                     .map(with_size_told)
                     .map(with_kinds_told)
+                    .map(with_light_names)
                     .map(Scene::with_seen_distance);
             }
             Err(mpsc::RecvTimeoutError::Timeout) => {}
@@ -78,6 +79,20 @@ fn open_watched(
         Err(panic) => std::panic::resume_unwind(panic),
         Ok(()) => Err(SceneError::Cancelled),
     }
+}
+
+/// Gives every light a name of its own, by which experiments change it.
+fn with_light_names(mut scene: Scene) -> Scene {
+    for i in 0..scene.lights.len() {
+        let (before, rest) = scene.lights.split_at_mut(i);
+        let is_free = |name: &String| !name.is_empty() && before.iter().all(|l| l.name != *name);
+        let name = rest[0].name.clone();
+        let stem = if name.is_empty() { "light" } else { &name };
+        let numbered = (i + 1..).map(|number| format!("{stem} {number}"));
+        let mut names = std::iter::once(name.clone()).chain(numbered);
+        rest[0].name = names.find(is_free).unwrap_or_default();
+    }
+    scene
 }
 
 /// Opens a scene by name, on the worker thread.

@@ -66,6 +66,9 @@ pub fn scene_hash(scene: &Scene) -> String {
         }
     }
     // Only values that differ from the default, so that hashes of older scenes stay valid.
+    for (i, _) in (0u32..).zip(&scene.lights).filter(|(_, l)| !l.on) {
+        hash.words(&[i]);
+    }
     let plain = Material::default().dielectric();
     for (i, m) in (0u32..)
         .zip(&scene.materials)

@@ -17,6 +17,9 @@ const MAX_RADIANCE: f32 = 1e12;
 /// Reads an HDR or EXR file. Deviations from the file are added to the warnings, which name the
 /// file.
 pub(crate) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Environment, String> {
+    if !path.exists() {
+        return Err(format!("Sky '{}': file not found", path.display()));
+    }
     let level = caught(|| decode(path))
         .flatten()
         .map_err(|problem| format!("environment '{}': {problem}", path.display()))?;

@@ -105,6 +105,14 @@ impl Scene {
         Ok(self)
     }
 
+    /// Whether nothing emits light: neither lights nor sky nor materials.
+    pub fn is_unlit(&self) -> bool {
+        let dark = |light: &Light| light.emitted() == Vec3::ZERO;
+        self.sky == Vec3::ZERO
+            && self.lights.iter().all(dark)
+            && self.materials.iter().all(|m| m.emission == Vec3::ZERO)
+    }
+
     /// The scene's lights, then the sun of its environment map.
     pub fn all_lights(&self) -> Vec<Light> {
         let sun = self

@@ -243,7 +243,7 @@ fn light(light: &Light) -> (usize, Value) {
 /// Lights by extension, and their nodes.
 fn lights(scene: &Scene, writer: &mut Writer) -> [Vec<Value>; 2] {
     let mut lists = [Vec::new(), Vec::new()];
-    for one in &scene.lights {
+    for one in scene.lights.iter().filter(|light| light.on) {
         let (extension, value) = light(one);
         let turn = match one.kind {
             LightKind::Rectangle { .. } => {

@@ -7,7 +7,7 @@ use crate::graph::Graph;
 use crate::lab::{Lab, LabError};
 use crate::results::capture::{self, Resource, What};
 use crate::results::timers::Rows;
-use crate::scene::Scene;
+use crate::scene::{Light, LightFields, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -45,24 +45,36 @@ pub fn experiment(
             .as_ref()
             .filter(|e| e.rotation != *rotation)
             .map(|_| *rotation);
-        experiment.lights = lights
-            .iter()
-            .zip(&scene.lights)
-            .filter(|(light, own)| light != own)
-            .map(|(light, own)| {
-                (
-                    Loc {
-                        value: own.name.clone(),
-                        at: At::default(),
-                    },
-                    light.fields().changed(&own.fields()),
-                )
-            })
-            .collect();
+        experiment.lights = light_changes(lights, &scene.lights);
     }
     experiment.environment =
         (picture != EnvironmentChange::default()).then_some(Loc { value: picture, at });
     experiment
+}
+
+/// The changes that lead from the scene's own lights to these.
+fn light_changes(lights: &[Light], own: &[Light]) -> Vec<(Loc<String>, LightFields)> {
+    let by_name = |list: &[Light], name: &str| list.iter().find(|l| l.name == name).cloned();
+    let kept = own.iter().filter_map(|own| {
+        let change = match by_name(lights, &own.name) {
+            None => LightFields::removal(),
+            Some(light) if light == *own => return None,
+            Some(light) if light.kind.index() == own.kind.index() => {
+                light.fields().changed(&own.fields())
+            }
+            Some(light) => light.addition(),
+        };
+        Some((own.name.clone(), change))
+    });
+    let added = lights.iter().filter_map(|light| {
+        let is_new = by_name(own, &light.name).is_none();
+        is_new.then(|| (light.name.clone(), light.addition()))
+    });
+    let at = At::default();
+    let changes = kept.chain(added);
+    changes
+        .map(|(value, change)| (Loc { value, at }, change))
+        .collect()
 }
 
 /// A side without the probed pixel and the slice: those are states of the window.

@@ -38,6 +38,7 @@ impl Run<'_> {
             reuse: session.share(),
             experiment: save::still(&self.desired, desired, "error", self.clock.now, scene),
             scene: scene.clone(),
+            lit: session.scene.clone(),
             lights: self.desired.lights.clone(),
             frames: session.converging_frames(),
         };

@@ -21,6 +21,8 @@ pub struct Key {
     pub revision: u64,
     /// Which scene was loaded.
     pub scene: u64,
+    /// Numbers of lights and shadow maps.
+    pub lights: [u32; 4],
     /// A further resource to read back.
     pub wanted: Vec<String>,
 }

@@ -49,6 +49,8 @@ pub struct ErrorRequest {
     pub experiment: Experiment,
     /// The scene with its own light.
     pub scene: Arc<Scene>,
+    /// The scene of the picture's session, with as many lights.
+    pub lit: Arc<Scene>,
     /// Light that differs from the scene's own.
     pub lights: Option<LightState>,
     /// Frames until the picture has converged.
@@ -211,7 +213,7 @@ fn light_of(request: ErrorRequest, part: &str) -> Result<Linear, LabError> {
         loaded,
         reuse,
         experiment,
-        scene,
+        lit,
         lights,
         frames,
         ..
@@ -227,7 +229,7 @@ fn light_of(request: ErrorRequest, part: &str) -> Result<Linear, LabError> {
         .find(|p| p.name == part);
     let texture = named.ok_or_else(missing)?.texture;
     let mut session: Session =
-        lab.build(&experiment, &loaded, scene, vec![texture], Some(&reuse))?;
+        lab.build(&experiment, &loaded, lit, vec![texture], Some(&reuse))?;
     if lights.is_some_and(|lights| !lights.light(&mut session)) {
         return Err(LabError::Request(
             "the light changed more than a session can follow".into(),

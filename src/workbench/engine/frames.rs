@@ -134,9 +134,11 @@ impl Run<'_> {
             session.place_camera(&path.at(self.clock.now));
         }
         if std::mem::take(&mut side.lights) {
-            let lights = self.desired.lights.clone();
-            let lights = lights.unwrap_or_else(|| LightState::of(&session.scene));
-            lights.light(session);
+            let own = || self.scene.as_ref().map(|scene| LightState::of(scene));
+            // A session that cannot follow is replaced soon.
+            if let Some(lights) = self.desired.lights.clone().or_else(own) {
+                lights.light(session);
+            }
         }
         session.set_time(self.clock.now);
         session.set_execution(self.desired.execution);

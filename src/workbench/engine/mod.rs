@@ -248,6 +248,8 @@ struct Run<'a> {
     /// The same of the scene that is there.
     loaded_key: Option<(String, String, u64)>,
     scene_number: u64,
+    /// A scene with another number of lights, and the number of the scene that it is made from.
+    lit: Option<(u64, Arc<Scene>)>,
     loading: Option<Arc<AtomicBool>>,
     loaded: Sender<SceneResult>,
     clock: Clocked,
@@ -461,6 +463,7 @@ impl<'a> Run<'a> {
             scene_key: None,
             loaded_key: None,
             scene_number: 0,
+            lit: None,
             loading: None,
             loaded,
             clock: Clocked {

@@ -5,8 +5,8 @@ use super::builder::{Done, Job, Key};
 use super::converge::Need;
 use super::report::{BuiltReport, GraphInfo, PassUses, Report};
 use crate::diagnostics::{Diagnostic, Place};
-use crate::lab::{LabError, Loaded, Session, params_of};
-use crate::scene::Scene;
+use crate::lab::{LabError, Loaded, Session, light_counts, params_of};
+use crate::scene::{Light, Scene};
 use crate::vulkan::VulkanError;
 use crate::workbench::desired::request::SideRequest;
 use std::sync::Arc;
@@ -23,8 +23,41 @@ impl Run<'_> {
             size: self.desired.size,
             revision: self.desired.revision,
             scene: self.scene_number,
+            lights: light_counts(&self.lights()),
             wanted,
         }
+    }
+
+    /// The lights that the picture should have.
+    fn lights(&self) -> Vec<Light> {
+        // While a scene loads, the requested lights may be those of the next one.
+        let requested = self.desired.lights.as_ref();
+        match (requested.filter(|_| self.loading.is_none()), &self.scene) {
+            (Some(state), _) => state.lights.clone(),
+            (None, Some(scene)) => scene.lights.clone(),
+            (None, None) => Vec::new(),
+        }
+    }
+
+    /// The scene with as many lights of each kind as requested. The copy is kept until the numbers
+    /// change again.
+    fn lit_scene(&mut self, scene: Arc<Scene>, counts: [u32; 4]) -> Arc<Scene> {
+        if light_counts(&scene.lights) == counts {
+            return scene;
+        }
+        let known = self.lit.take().filter(|(number, lit)| {
+            *number == self.scene_number && light_counts(&lit.lights) == counts
+        });
+        let (number, lit) = known.unwrap_or_else(|| {
+            let lights = self.lights();
+            let lit = Scene {
+                lights,
+                ..Scene::clone(&scene)
+            };
+            (self.scene_number, Arc::new(lit))
+        });
+        self.lit = Some((number, lit.clone()));
+        lit
     }
 
     /// Reconciles a side with the desired state: sets values, or starts a build.
@@ -94,10 +127,11 @@ impl Run<'_> {
 
     /// Starts the build of a session, unless one is in work.
     fn build(&mut self, number: usize, key: Key, scene: Arc<Scene>, preview: bool) {
-        let side = &self.sides[number];
-        if side.building.is_some() {
+        if self.sides[number].building.is_some() {
             return;
         }
+        let scene = self.lit_scene(scene, key.lights);
+        let side = &self.sides[number];
         // B starts with objects that it can share with A, and vice versa.
         let other = self.sides[1 - number].session.as_ref();
         let reuse = match &side.session {
