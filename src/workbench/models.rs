@@ -12,6 +12,7 @@ pub struct Models {
     /// Files found, once they were looked for.
     found: Option<Vec<(PathBuf, u64)>>,
     dialog: FileDialog,
+    sky: FileDialog,
 }
 
 /// How deep folders are looked into, and the most files that are listed.
@@ -19,6 +20,7 @@ const DEEP: usize = 2;
 const MOST: usize = 200;
 
 const OPENED: &str = "Scenes, models, experiments";
+const SKIES: &str = "HDRI (.hdr, .exr)";
 
 impl Models {
     /// Begins with the dialog at a folder.
@@ -31,9 +33,17 @@ impl Models {
             .add_file_filter_extensions(OPENED, extensions)
             .default_file_filter(OPENED)
             .default_size([620.0, 360.0]);
+        let sky = FileDialog::new()
+            .id("sky")
+            .title("Load an HDRI as the sky")
+            .initial_directory(folder.to_path_buf())
+            .add_file_filter_extensions(SKIES, vec!["hdr", "exr"])
+            .default_file_filter(SKIES)
+            .default_size([620.0, 360.0]);
         Models {
             found: None,
             dialog,
+            sky,
         }
     }
 
@@ -88,12 +98,26 @@ impl Models {
 
     /// Shows the dialog, if it is open; the file that was picked.
     pub fn picked(&mut self, ui: &Ui) -> Option<PathBuf> {
-        if *self.dialog.state() == DialogState::Closed {
-            return None;
-        }
-        self.dialog.update(ui.ctx());
-        self.dialog.take_picked()
+        picked(&mut self.dialog, ui)
     }
+
+    /// Opens the dialog for an HDRI.
+    pub fn ask_sky(&mut self) {
+        self.sky.pick_file();
+    }
+
+    /// Shows the dialog for an HDRI, if it is open; the file that was picked.
+    pub fn picked_sky(&mut self, ui: &Ui) -> Option<PathBuf> {
+        picked(&mut self.sky, ui)
+    }
+}
+
+fn picked(dialog: &mut FileDialog, ui: &Ui) -> Option<PathBuf> {
+    if *dialog.state() == DialogState::Closed {
+        return None;
+    }
+    dialog.update(ui.ctx());
+    dialog.take_picked()
 }
 
 /// Model files of a folder and those in it.

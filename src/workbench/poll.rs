@@ -4,6 +4,8 @@ use crate::experiment::{CameraChoice, Experiment};
 use crate::graph::run::Change;
 use crate::lab::{Viewpoint, viewpoint_of};
 use crate::scene::Scene;
+use crate::workbench::desired::lights::headlight;
+use crate::workbench::desired::request::LightState;
 use crate::workbench::desired::save;
 use crate::workbench::engine::Engine;
 use crate::workbench::engine::report::{BuiltReport, PictureReport, Report};
@@ -228,6 +230,22 @@ impl Workbench {
         self.sides[number].picture = Some(picture);
     }
 
+    /// Adds a headlight to a scene without any light, as an unsaved change.
+    fn light_unlit(&mut self, scene: &Scene) {
+        let Some(camera) = self.desired.camera else {
+            return;
+        };
+        if self.desired.lights.is_some() || !scene.is_unlit() {
+            return;
+        }
+        if self.experiment.baseline.is_none() {
+            self.saved_state();
+        }
+        let mut state = LightState::of(scene);
+        state.lights.push(headlight(&camera, self.scene.diagonal));
+        self.desired.lights = Some(state);
+    }
+
     fn loaded(&mut self, scene: Arc<Scene>) {
         self.scene.loading = None;
         self.messages.trouble = None;
@@ -239,7 +257,9 @@ impl Workbench {
             .as_ref()
             .is_some_and(|s| s.name == scene.name)
             && self.desired.camera.is_some();
-        if !std::mem::take(&mut self.undo.returning) && (!same || self.experiment.file.is_some()) {
+        let returns = std::mem::take(&mut self.undo.returning);
+        let is_opened = !returns && (!same || self.experiment.file.is_some());
+        if is_opened {
             let fallback = Experiment {
                 camera: CameraChoice::Named("default".into()),
                 ..self.bare()
@@ -259,10 +279,16 @@ impl Workbench {
         }
         let (low, high) = scene.bounds();
         self.scene.diagonal = (high - low).length().max(1e-3);
+        if is_opened {
+            self.light_unlit(&scene);
+        }
         let (name, triangles) = (scene.name.clone(), scene.triangle_count());
+        let known = self.scene_warnings();
         self.scene.loaded = Some(scene);
         let warnings = self.scene_warnings();
-        self.scene.warned = !warnings.is_empty();
+        // Dismissed warnings stay away, for example when only the sky changes.
+        let new = warnings.iter().any(|warning| !known.contains(warning));
+        self.scene.warned = new || self.scene.warned && !warnings.is_empty();
         self.event(
             "loaded",
             json!({ "scene": name, "triangles": triangles, "warnings": warnings }),
