@@ -342,8 +342,11 @@ impl Workbench {
         }
     }
 
-    /// Sets the parameter that the graph names for clicks.
+    /// Sets the parameter that the graph names for clicks. No point also deselects the light.
     fn point_at(&mut self, at: Option<Vec2>) {
+        if at.is_none() {
+            self.tabs.surroundings.selected = None;
+        }
         let Some(info) = self.sides[0].info.clone() else {
             return;
         };

@@ -2,6 +2,7 @@
 
 pub mod compare;
 pub(super) mod difference;
+pub(crate) mod gizmo;
 pub(crate) mod motion;
 mod overlay;
 pub(crate) mod view;

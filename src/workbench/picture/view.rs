@@ -1,6 +1,7 @@
 //! The picture in the viewport: A, B, or both, and its mouse controls.
 
 use super::compare::{MODES, Mode};
+use super::gizmo::Drag;
 use super::motion;
 use super::zoom::{Zoom, foot, pixel_at, pixel_text};
 use crate::results::timers::Rows;
@@ -27,6 +28,8 @@ pub struct View {
     held: motion::Held,
     /// Where picture A is, in points.
     pub place: Option<Rect>,
+    /// The drag of a light's handle.
+    pub(super) drag: Option<Drag>,
 }
 
 impl Default for View {
@@ -41,6 +44,7 @@ impl Default for View {
             zoom: Zoom::default(),
             place: None,
             held: motion::Held::default(),
+            drag: None,
         }
     }
 }
@@ -146,6 +150,7 @@ impl Workbench {
         self.view.place = Some(shown);
         self.read_out(&painter, &response, shown, both);
         self.mouse(ui, &response, shown, size, both);
+        self.gizmo(ui, &painter, shown);
     }
 
     /// Draws the pictures in the mode of comparison. Returns the places of A and B.
