@@ -18,8 +18,21 @@ pub struct Paths {
     /// Whether the camera follows the path.
     pub follow: bool,
     taken: bool,
+    /// The answer to the last saving.
+    said: String,
+    play: Play,
     /// Image sequences.
     pub sequence: Sequence,
+}
+
+/// How far the time is on the path that the camera follows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Play {
+    Stopped,
+    /// Sent back to the first key.
+    Rewound,
+    /// Before the last key.
+    Running,
 }
 
 impl Default for Paths {
@@ -29,6 +42,8 @@ impl Default for Paths {
             name: "path".into(),
             follow: false,
             taken: false,
+            said: String::new(),
+            play: Play::Stopped,
             sequence: Sequence::default(),
         }
     }
@@ -43,6 +58,7 @@ impl Tab for Paths {
     }
 
     fn poll(workbench: &mut Workbench) {
+        workbench.end_of_path();
         workbench.poll_sequence();
     }
 }
@@ -64,15 +80,18 @@ impl Workbench {
             let field = egui::TextEdit::singleline(&mut paths.name).desired_width(100.0);
             let field = ui.add(field);
             named(&field, egui::WidgetType::TextEdit, "path name");
+            let enter = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             paths.taken &= !field.changed();
             let text = match paths.taken {
                 true => "Overwrite",
                 false => "save path",
             };
-            let save = ui.add_enabled(!paths.path.keys.is_empty(), egui::Button::new(text));
-            if save.clicked() {
+            let has_keys = !paths.path.keys.is_empty();
+            let save = ui.add_enabled(has_keys, egui::Button::new(text));
+            if save.clicked() || enter && has_keys {
                 self.save_path();
             }
+            ui.weak(&self.tabs.paths.said);
         });
     }
 
@@ -86,6 +105,7 @@ impl Workbench {
                 Ok(path) => {
                     let paths = &mut self.tabs.paths;
                     (paths.path, paths.name, paths.taken) = (path, name, false);
+                    paths.said.clear();
                 }
                 Err(errors) => self.sides[0].errors = errors,
             }
@@ -100,10 +120,11 @@ impl Workbench {
         match result {
             Ok(file) => {
                 let path = file.display().to_string();
-                self.messages.status = format!("saved {path}");
+                self.tabs.paths.name = short(&path);
+                self.tabs.paths.said = format!("saved {path}");
                 self.event("saved", serde_json::json!({ "path": path }));
             }
-            Err(e) => self.messages.status = e.to_string(),
+            Err(e) => self.tabs.paths.said = e.to_string(),
         }
     }
 
@@ -115,8 +136,63 @@ impl Workbench {
         Ok(file)
     }
 
+    /// Plays the scene's time, and sets it.
+    fn path_time(&mut self, ui: &mut Ui) {
+        let mut now = self.shown_time();
+        let last = self.tabs.paths.path.keys.last().map_or(0.0, |k| k.time);
+        let clock = &mut self.desired.clock;
+        ui.horizontal(|ui| {
+            let text = if clock.playing { "pause" } else { "play" };
+            let play = ui.button(text);
+            named(&play, egui::WidgetType::Button, &format!("{text} path"));
+            if play.on_hover_text("Space").clicked() {
+                clock.playing = !clock.playing;
+            }
+            let end = if last > 0.0 { last } else { now.max(10.0) };
+            let slider = egui::Slider::new(&mut now, 0.0..=end)
+                .clamping(egui::SliderClamping::Never)
+                .suffix(" s");
+            let slider = ui.add(slider);
+            named(&slider, egui::WidgetType::Slider, "time of the path");
+            if slider.changed() {
+                (clock.playing, clock.at) = (false, now);
+                clock.jumps += 1;
+            }
+        });
+    }
+
+    /// Stops the time at the last key of a path that does not repeat. Played again, it starts at
+    /// the first key.
+    fn end_of_path(&mut self) {
+        let keys = self.desired.path.as_ref().filter(|path| !path.repeat);
+        let keys = keys.map_or(&[][..], |path| &path.keys);
+        let (Some(first), Some(last)) = (keys.first(), keys.last()) else {
+            return;
+        };
+        let (first, last) = (first.time, last.time);
+        let (now, play) = (self.shown_time(), self.tabs.paths.play);
+        let clock = &mut self.desired.clock;
+        if !clock.playing || first == last {
+            self.tabs.paths.play = Play::Stopped;
+            return;
+        }
+        let (next, jump) = match play {
+            _ if now < last => (Play::Running, None),
+            Play::Running => (Play::Stopped, Some(last)),
+            Play::Stopped => (Play::Rewound, Some(first)),
+            Play::Rewound => (Play::Rewound, None),
+        };
+        self.tabs.paths.play = next;
+        if let Some(time) = jump {
+            (clock.playing, clock.at) = (next == Play::Rewound, time);
+            clock.jumps += 1;
+            self.send_request();
+        }
+    }
+
     fn path_keys(&mut self, ui: &mut Ui) {
         self.path_bar(ui);
+        self.path_time(ui);
         let asked = key_rows(ui, &self.tabs.paths.path.keys);
         let paths = &mut self.tabs.paths;
         match asked {
@@ -138,7 +214,6 @@ impl Workbench {
     }
 
     fn path_bar(&mut self, ui: &mut Ui) {
-        let now = self.sides[0].picture.as_ref().map_or(0.0, |p| p.time);
         let paths = &mut self.tabs.paths;
         ui.horizontal(|ui| {
             let add = ui
@@ -155,7 +230,6 @@ impl Workbench {
             ui.add_enabled(!paths.path.keys.is_empty(), follow)
                 .on_hover_text("The camera follows the path in the scene's time; play starts it");
             ui.checkbox(&mut paths.path.repeat, "repeat");
-            ui.weak(format!("{now:.2} s"));
         });
     }
 
