@@ -30,6 +30,10 @@ pub(super) fn sun() -> Light {
     }
 }
 
+/// At most a third of the picture may be nearer than this fraction of the way to the target: one
+/// object must not hide the scene.
+const NEAR: f32 = 0.1;
+
 /// A level view along the longest horizontal axis, from inside its positive end. If that position
 /// is inside an object or sees nothing, other positions follow. A position costs at most 0.1 s, and
 /// the first one is nearly always free.
@@ -43,12 +47,13 @@ pub(super) fn camera(scene: &Scene) -> Camera {
         .flat_map(|p| [place(scene, 0, *p), place(scene, 1, *p)])
     {
         let seen = scene.seen_by(&place);
-        let far = seen.median.unwrap_or(0.0) / (place.target - place.eye).length();
-        if seen.hits >= 0.25 && seen.backs <= 0.6 * seen.hits && far >= 0.15 {
+        let reach = (place.target - place.eye).length();
+        let [far, near] = [seen.median, seen.near].map(|d| d.unwrap_or(0.0) / reach);
+        if seen.hits >= 0.25 && seen.backs <= 0.6 * seen.hits && far >= 0.15 && near >= NEAR {
             return place;
         }
-        if far > best.0 {
-            best = (far, place);
+        if far.min(2.0 * near) > best.0 {
+            best = (far.min(2.0 * near), place);
         }
     }
     best.1

@@ -17,6 +17,8 @@ pub(super) struct Seen {
     pub backs: f32,
     /// Median distance of the hits (m); `None` without hits.
     pub median: Option<f32>,
+    /// Distance of the nearest third of the hits (m); `None` without hits.
+    pub near: Option<f32>,
 }
 
 impl Scene {
@@ -69,6 +71,7 @@ impl Scene {
             hits: share(nearest.len()),
             backs: share(nearest.iter().filter(|hit| hit.1).count()),
             median: nearest.get(nearest.len() / 2).map(|hit| hit.0),
+            near: nearest.get(nearest.len() / 3).map(|hit| hit.0),
         }
     }
 }
