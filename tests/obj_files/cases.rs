@@ -541,7 +541,7 @@ pub const CASES: &[Case] = &[
     quad("a name in quotes", b"newmtl m\nmap_Kd \"my wall.png\" # x\n", &[BaseMap("m", CHECKER), Warnings(0)]),
     quad("a picture that is not there", b"newmtl m\nmap_Kd gone.png\n", &[
         BaseMap("m", MISSING),
-        Warns("textures: the file does not exist; a checkerboard replaces it ('"),
+        Warns("textures: the file does not exist; a checkerboard replaces it, or its first colour on meshes without texture coordinates ('"),
         Warns("gone.png of material m')"),
         Warnings(1),
     ]),

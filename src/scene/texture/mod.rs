@@ -223,7 +223,7 @@ fn cook(recipe: &Recipe, material: &str) -> (Texture, Vec<Notice>) {
                 &file,
                 material,
                 &problem,
-                "a checkerboard replaces it",
+                "a checkerboard replaces it, or its first colour on meshes without texture coordinates",
             ));
             (stand_in::checkerboard(recipe, &file), warnings)
         }
