@@ -13,7 +13,7 @@ pub struct LightFields {
     pub(super) vectors: Vec<(&'static Field, Vec3)>,
     /// Angles in degrees, lengths in metres.
     pub(super) numbers: Vec<(&'static Field, f64)>,
-    /// By a name of [`FLAGS`](super::FLAGS).
+    /// Switches, by their names in [`FLAGS`](super::FLAGS).
     pub(super) flags: Vec<(&'static str, bool)>,
 }
 

@@ -18,8 +18,8 @@ fn name(kind: &Kind, lights: &[&[Light]]) -> String {
     format!("{} {}", kind.name.to_lowercase(), last + 1)
 }
 
-/// A new light of a kind, among the present lights and the scene's own: half way to what the camera
-/// looks at, about as bright there as daylight indoors. `diagonal` is the scene's size, m.
+/// A new light of a kind, half way to the camera's target. `lights` are the present lights and the
+/// scene's own, whose names are taken; `diagonal` is the scene's size, m.
 pub(crate) fn new(kind: &Kind, lights: &[&[Light]], camera: &Camera, diagonal: f32) -> Light {
     let view = camera.target - camera.eye;
     let mut light = Light::new(kind, &name(kind, lights));

@@ -1,4 +1,4 @@
-//! The handles of a light: where they are, and what a drag does.
+//! The handles of a light: their places, and the effect of a drag.
 
 use super::screen::Screen;
 use crate::scene::Light;
@@ -12,7 +12,7 @@ const AXIS: f32 = 70.0;
 /// Length of the arrow of a direction, points.
 const ARROW: f32 = 110.0;
 
-/// What a handle moves.
+/// A handle, by the property that it changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Handle {
     /// The position, parallel to the screen.
@@ -20,7 +20,8 @@ pub(super) enum Handle {
     /// The position along an axis of the world.
     Axis(usize),
     Direction,
-    /// A number of the kind, along the light's side or top; the number is so many times the distance.
+    /// A length of the kind: its name, 0 for the light's side or 1 for its top, and its ratio to the
+    /// distance of the handle from the centre.
     Extent(&'static str, usize, f32),
 }
 
@@ -87,7 +88,8 @@ impl Handle {
         let (mut light, centre) = (start.clone(), centre(start, middle));
         match self {
             Handle::Centre => {
-                light.position += screen.in_plane(to, centre) - screen.in_plane(from, centre);
+                let way = screen.in_plane(to, centre) - screen.in_plane(from, centre);
+                *light.vector("position")? += way;
             }
             Handle::Axis(i) => {
                 let axis = AXES[i].1;

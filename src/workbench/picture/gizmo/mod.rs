@@ -51,6 +51,9 @@ impl Workbench {
         };
         let own = LightState::of(&scene);
         let mut now = self.desired.lights.clone().unwrap_or_else(|| own.clone());
+        if now.lights.iter().all(|light| light.name != selected) {
+            return;
+        }
         let screen = Screen::new(&camera, shown);
         let painter = painter.with_clip_rect(shown.intersect(painter.clip_rect()));
         let mut sun = camera.target;

@@ -7,7 +7,8 @@ use glam::Vec3;
 const RGB: [&str; 3] = ["red", "green", "blue"];
 
 /// Controls of a linear RGB colour: a swatch, the intensity (the largest of the three channels) and
-/// the channels. `name` precedes the accessible names; `quantity` and `unit` say what is measured.
+/// the channels. `name` precedes the accessible names; `quantity` and `unit` label
+/// the intensity.
 pub(super) fn colour(ui: &mut Ui, v: &mut Vec3, name: &str, quantity: &str, unit: &str) {
     ui.horizontal(|ui| {
         swatch(ui, v, name);

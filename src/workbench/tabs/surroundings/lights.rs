@@ -10,7 +10,7 @@ use crate::workbench::panel::control::named;
 use egui::{Ui, WidgetType};
 use egui_phosphor::regular::{COPY, TRASH};
 
-/// What a click does to the list.
+/// A change to the list.
 enum Asked {
     Add(Light),
     Remove(usize),
@@ -37,7 +37,10 @@ impl Workbench {
                 *selected = Some(light.name.clone());
                 now.lights.push(light);
             }
-            Some(Asked::Remove(i)) => drop(now.lights.remove(i)),
+            Some(Asked::Remove(i)) => {
+                let removed = now.lights.remove(i);
+                selected.take_if(|name| *name == removed.name);
+            }
             None => {}
         }
         let differs = now != own;
