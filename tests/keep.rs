@@ -448,6 +448,44 @@ fn a_scene_of_the_project_is_named_from_the_experiment() {
 }
 
 #[test]
+fn an_experiment_adds_removes_and_switches_lights() {
+    let project = Project::new();
+    let read = |lights: &str| {
+        let text = format!("(graph: \"graph.ron\", scene: \"cornell\", lights: {{ {lights} }})");
+        Experiment::read(&project.write("configs/lit.ron", &text))
+    };
+    let lit = |lights: &str, times: usize| {
+        let mut lit = (*scene("cornell")).clone();
+        (0..times).for_each(|_| read(lights).unwrap().adapt_scene(&mut lit).unwrap());
+        lit.lights
+    };
+    let lamp = scene("cornell").lights[0].clone();
+
+    let added = "\"spot 1\": (add: \"Spot\", color: (1, 2, 3), inner: 10, shadow: false)";
+    let lights = lit(added, 1);
+    assert_eq!((lights.len(), &lights[0]), (2, &lamp));
+    assert_eq!(
+        (lights[1].name.as_str(), lights[1].shadow),
+        ("spot 1", false)
+    );
+    assert_eq!(lights[1].color, Vec3::new(1.0, 2.0, 3.0));
+    assert_eq!(lit(added, 2), lights, "twice is the same as once");
+
+    let off = lit("\"lamp\": (on: false)", 1);
+    assert!(!off[0].on && off[0].color == lamp.color);
+    let others = lit(&format!("\"lamp\": (remove: true), {added}"), 2);
+    assert_eq!(others, lights[1..]);
+
+    let message = |lights: &str| {
+        let list = read(lights).unwrap_err();
+        list.iter().map(|d| d.message.clone()).collect::<String>()
+    };
+    assert!(message("\"a\": (add: \"Bulb\")").contains("Bulb"));
+    let both = message("\"lamp\": (remove: true, on: false)");
+    assert!(both.contains("a removed light has no fields"), "{both}");
+}
+
+#[test]
 fn an_experiment_changes_the_light_of_its_scene() {
     let project = Project::new();
     let read = |text: &str| {

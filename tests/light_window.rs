@@ -157,3 +157,18 @@ fn a_handle_moves_its_light_by_what_the_projection_says() {
     });
     driver.close();
 }
+
+#[test]
+fn a_sky_that_is_not_there_leaves_its_path_in_the_field() {
+    let mut driver = open(BOX);
+    let first = driver.resting(0);
+    driver.click("TextInput", "picture of the sky");
+    driver.text("gone.hdr");
+    let mark = driver.now();
+    driver.keys(&[0xff0d]);
+    let failed = driver.event(mark, "load failed");
+    assert_eq!(failed["why"], "Sky 'gone.hdr': file not found");
+    driver.widget(|w| w["label"] == "picture of the sky" && w["value"] == "gone.hdr");
+    assert_eq!(driver.resting(0), first);
+    driver.close();
+}

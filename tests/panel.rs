@@ -400,7 +400,7 @@ fn a_new_sky_keeps_its_own_tint() {
     let mut driver = open();
     let white = driver.first_picture();
     driver.click("", "Scene");
-    let (x, y) = centre(driver.find("SpinButton", "sky red"));
+    let (x, y) = centre(driver.find("SpinButton", "sky intensity"));
     let mark = driver.now();
     driver.drag((x, y), (x + 60.0, y));
     driver.other_picture(mark, 0, &white);
@@ -553,4 +553,48 @@ fn trace_is_ordered(trace: &serde_json::Value, frames: usize) {
             }
         }
     }
+}
+
+/// The time of a path stops at its last key, and Enter saves the path under the name that the field then shows.
+#[test]
+fn a_path_stops_at_its_last_key_and_is_saved_by_enter() {
+    let mut driver = small();
+    let first = driver.first_picture();
+    driver.grow_lower_tabs();
+    driver.click("", "Motion");
+    driver.click("Button", "add key");
+    let (x, y) = centre(driver.place());
+    let mark = driver.now();
+    driver.drag((x, y), (x + 40.0, y));
+    driver.other_picture(mark, 0, &first);
+    driver.click("Button", "add key");
+    driver.click("", "follow");
+    driver.resting(0);
+    let mark = driver.now();
+    driver.click("Button", "play path");
+    driver.wait(mark, "a picture between the keys", |e| {
+        let time = e["time"].as_f64().unwrap_or(0.0);
+        e["event"] == "picture" && time > 0.0 && time < 1.0
+    });
+    driver.wait(mark, "the picture at the last key", |e| {
+        e["event"] == "picture" && e["time"] == 1.0
+    });
+    driver.texts_until("that it stands", |texts| has(texts, "play path"));
+    driver.resting(0);
+    let times = driver.events.iter().filter(|e| e["event"] == "picture");
+    assert_eq!(times.last().unwrap()["time"], 1.0);
+
+    driver.click("TextInput", "path name");
+    driver.text(" b");
+    let mark = driver.now();
+    driver.keys(&[RETURN]);
+    let saved = driver.event(mark, "saved")["path"].clone();
+    let saved = saved.as_str().unwrap();
+    assert!(saved.contains('-') && saved.ends_with(".ron"), "{saved}");
+    driver.texts_until("where it was saved", |texts| {
+        has(texts, &format!("saved {saved}"))
+    });
+    let name = saved.rsplit('/').next().unwrap().trim_end_matches(".ron");
+    driver.widget(|w| w["label"] == "path name" && w["value"] == name);
+    driver.close();
 }

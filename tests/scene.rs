@@ -376,6 +376,21 @@ fn a_model_without_a_camera_is_not_seen_from_inside_of_something() {
 }
 
 #[test]
+fn a_model_is_not_hidden_by_a_box_close_to_its_camera() {
+    let folder = folder();
+    let room = obj_box(Vec3::new(5.0, 3.0, 4.0), Vec3::new(-5.0, 0.0, -4.0), 1);
+    let usual = open(write(&folder, "room.obj", &room)).unwrap().cameras["default"].eye;
+    // It fills half of the picture that looks along -x.
+    let (low, high) = (
+        Vec3::new(usual.x - 1.0, 0.0, usual.z),
+        Vec3::new(usual.x - 0.5, 3.0, usual.z + 3.0),
+    );
+    let block = obj_box(low, high, 9);
+    let blocked = open(write(&folder, "blocked.obj", format!("{room}{block}"))).unwrap();
+    assert_ne!(blocked.cameras["default"].eye, usual);
+}
+
+#[test]
 fn bad_triangles_are_dropped_and_counted() {
     let dir = folder();
     let obj = format!("{QUAD}v nan 0 0\nv 3 3 3\nf 1 2 5\nf 1 1 2\nf 1 6 6\n");
@@ -1678,4 +1693,16 @@ fn flat_models_open_with_their_front_in_view() {
             "{right} {up}: {away} m"
         );
     }
+}
+
+#[test]
+fn every_light_has_a_name_of_its_own() {
+    let folder = folder();
+    let light = |name: &str| {
+        format!("Point(name: \"{name}\", color: (1, 1, 1), position: (0, 1, 0), shadow: false)")
+    };
+    let lights = ["lamp", "lamp", "lamp 2", "lamp"].map(light).join(", ");
+    let lit = open(write(&folder, "lit.ron", format!("(lights: [{lights}])"))).unwrap();
+    let names: Vec<&str> = lit.lights.iter().map(|l| l.name.as_str()).collect();
+    assert_eq!(names, ["lamp", "lamp 2", "lamp 2 3", "lamp 4"]);
 }
