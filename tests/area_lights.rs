@@ -42,6 +42,7 @@ fn light(kind: LightKind, position: Vec3, direction: Vec3, shadow: bool) -> Ligh
         position,
         direction: direction.normalize(),
         up: Vec3::new(0.2, 1.0, 0.1),
+        on: true,
         shadow,
     }
 }

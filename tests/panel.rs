@@ -581,8 +581,8 @@ fn a_path_stops_at_its_last_key_and_is_saved_by_enter() {
     });
     driver.texts_until("that it stands", |texts| has(texts, "play path"));
     driver.resting(0);
-    let times = driver.events.iter().filter(|e| e["event"] == "picture");
-    assert_eq!(times.last().unwrap()["time"], 1.0);
+    let mut times = driver.events.iter().filter(|e| e["event"] == "picture");
+    assert_eq!(times.next_back().unwrap()["time"], 1.0);
 
     driver.click("TextInput", "path name");
     driver.text(" b");

@@ -228,8 +228,7 @@ fn light_of(request: ErrorRequest, part: &str) -> Result<Linear, LabError> {
         .into_iter()
         .find(|p| p.name == part);
     let texture = named.ok_or_else(missing)?.texture;
-    let mut session: Session =
-        lab.build(&experiment, &loaded, lit, vec![texture], Some(&reuse))?;
+    let mut session: Session = lab.build(&experiment, &loaded, lit, vec![texture], Some(&reuse))?;
     if lights.is_some_and(|lights| !lights.light(&mut session)) {
         return Err(LabError::Request(
             "the light changed more than a session can follow".into(),

@@ -27,25 +27,24 @@ pub(super) fn colour(ui: &mut Ui, v: &mut Vec3, name: &str, quantity: &str, unit
 
 /// A button in the colour, which opens a picker.
 fn swatch(ui: &mut Ui, v: &mut Vec3, name: &str) {
-    let (largest, id) = (v.max_element(), ui.id().with(("chroma", name)));
-    // Black has no chroma: it keeps the last one.
-    let kept = ui.data(|d| d.get_temp::<[f32; 3]>(id));
-    let mut chroma = match largest > 0.0 {
-        true => (*v / largest).to_array(),
-        false => kept.unwrap_or([1.0; 3]),
-    };
+    let id = ui.id().with(("chroma", name));
+    let kept = ui.data(|d| d.get_temp::<[f32; 3]>(id)).unwrap_or([1.0; 3]);
+    let mut chroma = chroma_of(*v, kept.into()).to_array();
     let button = ui.color_edit_button_rgb(&mut chroma);
     named(&button, WidgetType::ColorButton, &format!("{name} colour"));
+    let picked = chroma_of(chroma.into(), Vec3::ONE);
     if button.changed() {
-        let picked = Vec3::from(chroma);
-        let full = picked.max_element();
-        chroma = match full > 0.0 {
-            true => (picked / full).to_array(),
-            false => [1.0; 3],
-        };
-        *v = Vec3::from(chroma) * largest;
+        *v = picked * v.max_element();
     }
-    ui.data_mut(|d| d.insert_temp(id, chroma));
+    ui.data_mut(|d| d.insert_temp(id, picked.to_array()));
+}
+
+/// A colour with a largest channel of 1. Black has none: it keeps the last one.
+fn chroma_of(v: Vec3, kept: Vec3) -> Vec3 {
+    match v.max_element() > 0.0 {
+        true => v / v.max_element(),
+        false => kept,
+    }
 }
 
 /// One factor for all channels.
@@ -57,9 +56,23 @@ fn intensity(ui: &mut Ui, v: &mut Vec3, name: &str) {
     if now != before {
         let id = ui.id().with(("chroma", name));
         let kept = ui.data(|d| d.get_temp::<[f32; 3]>(id)).unwrap_or([1.0; 3]);
-        *v = match before > 0.0 {
-            true => *v * (now / before),
-            false => Vec3::from(kept) * now,
-        };
+        *v = chroma_of(*v, kept.into()) * now;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picked_colour_keeps_the_intensity_and_black_its_chroma() {
+        let light = Vec3::new(10.0, 5.0, 0.0);
+        for dark in [Vec3::new(0.0, 0.0, 0.2), Vec3::splat(0.01)] {
+            let picked = chroma_of(dark, Vec3::ONE) * light.max_element();
+            assert_eq!(picked.max_element(), 10.0, "{dark}");
+        }
+        let orange = chroma_of(light, Vec3::ONE);
+        assert_eq!(orange, Vec3::new(1.0, 0.5, 0.0));
+        assert_eq!(chroma_of(Vec3::ZERO, orange) * 4.0, Vec3::new(4.0, 2.0, 0.0));
     }
 }
