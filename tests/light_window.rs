@@ -6,7 +6,7 @@ mod window_driver;
 
 use common::{conelab, succeeds};
 use conelab::workbench::events::fingerprint;
-use window_driver::{WindowDriver, centre};
+use window_driver::{CONTROL, WindowDriver, centre};
 
 /// Light that does not depend on earlier frames, small enough for a software device.
 const BOX: &str = r#"(graph: "cones.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "cone_count": 3, "emitter_rays": 0 })"#;
@@ -115,6 +115,30 @@ fn a_scene_without_light_gets_a_headlight_that_is_saved() {
     driver.close();
 }
 
+/// A closed room without lights is black under the sun and the sky that models get.
+#[test]
+fn a_closed_model_without_light_gets_a_headlight() {
+    let corner = |i: usize| [0, 1, 2].map(|axis| (i >> axis & 1) as f32 * [6.0, 3.0, 5.0][axis]);
+    let corners = (0..8).map(corner);
+    let mut obj: String = corners
+        .map(|[x, y, z]| format!("v {x} {y} {z}\n"))
+        .collect();
+    for side in [
+        "1 3 7 5", "2 6 8 4", "1 5 6 2", "3 4 8 7", "1 2 4 3", "5 7 8 6",
+    ] {
+        obj += &format!("f {side}\n");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("room.obj");
+    std::fs::write(&path, obj).unwrap();
+    let mut driver = open(&BOX.replace("\"cornell\"", &format!("{path:?}")));
+    let lit = driver.resting(0);
+    assert_eq!(rendered(&mut driver), lit);
+    let black = click(&mut driver, "Button", "remove the headlight");
+    assert_eq!(black, fingerprint(&vec![0; 4 * 160 * 120]));
+    driver.close();
+}
+
 /// A drag of an axis moves the light along it, by as much as the projection says.
 #[test]
 fn a_handle_moves_its_light_by_what_the_projection_says() {
@@ -149,6 +173,9 @@ fn a_handle_moves_its_light_by_what_the_projection_says() {
         "{found} m instead of {expected} m"
     );
     assert!(right > left);
+    let mark = driver.now();
+    driver.keys(&[CONTROL, u32::from(b'z')]);
+    driver.picture(mark, 0, &old);
 
     // Escape takes the handles away.
     driver.keys(&[0xff1b]);

@@ -83,6 +83,9 @@ pub struct Scene {
     pub environment: Option<Environment>,
     /// Median distance visible from the default camera when the scene was opened (m); 0 if unknown.
     pub seen_distance: f32,
+    /// Whether the default camera of a model without lights is in a closed room, which the default
+    /// sun and sky do not light.
+    pub enclosed: bool,
     /// Deviations from the source file (missing files, dropped triangles, placeholders); each names
     /// the file.
     pub warnings: Vec<String>,

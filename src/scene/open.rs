@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
+use glam::Vec3;
+
 use crate::files::{ending, path_of};
 
 use super::formats::{SCENE_FILE, load_model};
@@ -113,7 +115,8 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
     }
     let mut scene = load_model(path, None, progress)?;
     scene.sky = defaults::sky_over(&scene);
-    if scene.lights.is_empty() {
+    let is_bare = scene.lights.is_empty();
+    if is_bare {
         scene.lights.push(defaults::sun());
     }
     if !scene.cameras.contains_key("default") {
@@ -121,6 +124,8 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
         let camera = own.unwrap_or_else(|| defaults::camera(&scene));
         scene.cameras.shift_insert(0, "default".into(), camera);
     }
+    let is_dark = is_bare && scene.materials.iter().all(|m| m.emission == Vec3::ZERO);
+    scene.enclosed = is_dark && scene.encloses(scene.cameras["default"].eye);
     Ok(scene)
 }
 

@@ -32,6 +32,22 @@ impl Scene {
         self
     }
 
+    /// Whether rays from a point hit a surface in every direction.
+    pub(super) fn encloses(&self, eye: Vec3) -> bool {
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z].into_iter();
+        axes.flat_map(|axis| [axis, -axis]).all(|axis| {
+            let camera = Camera {
+                eye,
+                target: eye + axis * super::defaults::least_reach(eye).max(1.0),
+                up: axis.any_orthonormal_vector(),
+                fov_y: 90.0,
+                near: 1e-3,
+                far: f32::INFINITY,
+            };
+            self.seen_by(&camera).hits == 1.0
+        })
+    }
+
     /// Traces a few rays from a camera in the scene's first pose.
     pub(super) fn seen_by(&self, camera: &Camera) -> Seen {
         let rays = rays(camera);

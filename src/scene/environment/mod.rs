@@ -5,7 +5,7 @@ mod file;
 mod level;
 mod sun;
 
-use super::{Light, Scene, SceneError};
+use super::{Light, Material, Scene, SceneError};
 use glam::{Quat, Vec3};
 use std::f32::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
@@ -105,12 +105,13 @@ impl Scene {
         Ok(self)
     }
 
-    /// Whether nothing emits light: neither lights nor sky nor materials.
+    /// Whether its default camera sees no light: neither lights nor sky nor materials emit, or it is
+    /// in a closed room without lights.
     pub fn is_unlit(&self) -> bool {
         let dark = |light: &Light| light.emitted() == Vec3::ZERO;
-        self.sky == Vec3::ZERO
-            && self.lights.iter().all(dark)
-            && self.materials.iter().all(|m| m.emission == Vec3::ZERO)
+        let emits = |material: &Material| material.emission != Vec3::ZERO;
+        let is_black = self.sky == Vec3::ZERO && self.lights.iter().all(dark);
+        self.enclosed || is_black && !self.materials.iter().any(emits)
     }
 
     /// The scene's lights, then the sun of its environment map.

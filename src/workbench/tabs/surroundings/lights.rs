@@ -75,7 +75,7 @@ fn headlight(ui: &mut Ui, lights: &mut Vec<Light>) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        ui.label("The scene has no light. A headlight was added at the first camera.");
+        ui.label("No light reaches the first camera. A headlight was added there.");
         if ui.button("remove the headlight").clicked() {
             lights.retain(|light| !is_one(light));
         }
