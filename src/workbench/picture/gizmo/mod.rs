@@ -135,7 +135,7 @@ impl Workbench {
             }
             let drag = self.view.drag.as_ref().filter(|d| d.handle == handle);
             if let (Some(drag), Some(to)) = (drag, response.interact_pointer_pos())
-                && response.dragged()
+                && (response.dragged() || response.drag_stopped())
                 && let Some(moved) = handle.dragged(&drag.start, screen, at, (drag.from, to))
             {
                 *light = moved;
