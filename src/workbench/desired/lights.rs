@@ -1,13 +1,8 @@
 //! New lights: their names, and where they start.
 
-use crate::scene::light::{KINDS, Kind, Quantity};
+use crate::scene::light::{Kind, Quantity};
 use crate::scene::{Camera, Light, LightKind};
 use glam::Vec3;
-
-/// All kinds of lights, as they are declared.
-pub(crate) fn kinds() -> impl Iterator<Item = &'static Kind> {
-    KINDS.iter()
-}
 
 /// Name of a new light: its kind and a number above those of all others. Numbers that only grow
 /// keep added lights in the order of a saved experiment.

@@ -73,6 +73,9 @@ mod tests {
         }
         let orange = chroma_of(light, Vec3::ONE);
         assert_eq!(orange, Vec3::new(1.0, 0.5, 0.0));
-        assert_eq!(chroma_of(Vec3::ZERO, orange) * 4.0, Vec3::new(4.0, 2.0, 0.0));
+        assert_eq!(
+            chroma_of(Vec3::ZERO, orange) * 4.0,
+            Vec3::new(4.0, 2.0, 0.0)
+        );
     }
 }

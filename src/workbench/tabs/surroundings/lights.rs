@@ -3,6 +3,7 @@
 use super::light::fields;
 use super::sky;
 use crate::scene::Light;
+use crate::scene::light::KINDS;
 use crate::workbench::Workbench;
 use crate::workbench::desired::lights as new;
 use crate::workbench::desired::request::LightState;
@@ -55,7 +56,7 @@ impl Workbench {
         let lists = [now.lights.as_slice(), &own.lights];
         let menu = ui.menu_button("add light", |ui| {
             let mut added = None;
-            for kind in new::kinds() {
+            for kind in &KINDS {
                 if ui.button(kind.name.to_lowercase()).clicked() {
                     let light = new::new(kind, &lists, &camera, self.scene.diagonal);
                     added = Some(Asked::Add(light));
