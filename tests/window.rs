@@ -616,7 +616,7 @@ fn the_window_answers_and_closes_while_a_slow_device_renders() {
         std::thread::sleep(Duration::from_millis(300));
         let start = Instant::now();
         driver.keys(&[F1]);
-        while driver.texts().iter().any(|t| t == "these keys") != shown {
+        while driver.texts().iter().any(|t| t == "Show this help") != shown {
             assert!(start.elapsed() < PATIENCE, "{:?}", driver.texts());
             std::thread::sleep(Duration::from_millis(2));
         }
@@ -786,6 +786,65 @@ fn the_camera_follows_a_path_and_the_tabs_show_what_they_are_for() {
     });
     driver.click("", "Inspect");
     driver.texts_until("statistics", |texts| texts.iter().any(|t| t == "NaN"));
+    driver.close();
+}
+
+/// A menu takes Escape before the probe does, letters and digits act at once, and Enter saves.
+#[test]
+fn keys_open_tabs_compare_and_close_what_is_open() {
+    let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
+    const ESCAPE: u32 = 0xff1b;
+    const ENTER: u32 = 0xff0d;
+    let mut driver = small();
+    let first = driver.first_picture();
+    let has = |text: &'static str| move |texts: &[String]| texts.iter().any(|t| t == text);
+    let misses = |text: &'static str| move |texts: &[String]| texts.iter().all(|t| t != text);
+    let letter = |c: char| [c as u32];
+
+    driver.keys(&letter('5'));
+    driver.texts_until("the inspector", has("NaN"));
+    let white = driver.find("Slider", "histogram white");
+    let (x, y) = centre(white);
+    driver.drag((x, y), (x - 80.0, y));
+    driver.texts_until("texels above white", |texts| {
+        let marked = texts.iter().find(|t| t.starts_with("above white ("));
+        marked.is_some_and(|t| t != "above white (0)")
+    });
+    driver.keys(&letter('1'));
+    driver.texts_until("the scene", has("add bookmark"));
+
+    driver.keys(&letter('b'));
+    driver.texts_until("modes of comparison", has("side by side"));
+    driver.keys(&letter('m'));
+    driver.texts_until("the next mode", has("showing A (press X)"));
+    driver.keys(&letter('b'));
+    driver.texts_until("no comparison", misses("side by side"));
+    driver.keys(&letter('c'));
+    driver.texts_until("frames without end", has("running"));
+    driver.keys(&letter('c'));
+    driver.texts_until("a picture that rests", has("converged"));
+
+    let (x, y) = centre(driver.place());
+    let mark = driver.now();
+    driver.click_at((x, y + 20.0));
+    let probed = driver.other_picture(mark, 0, &first);
+    driver.click("", "File");
+    driver.texts_until("the menu", has("Save as…"));
+    driver.keys(&[ESCAPE]);
+    driver.texts_until("no menu", misses("Save as…"));
+    driver.shows(&probed);
+    let mark = driver.now();
+    driver.keys(&[ESCAPE]);
+    driver.picture(mark, 0, &first);
+
+    driver.keys(&letter('8'));
+    driver.click("TextInput", "experiment name");
+    driver.keys(&[CONTROL, u32::from(b'a')]);
+    driver.text("entered");
+    let mark = driver.now();
+    driver.keys(&[ENTER]);
+    driver.event(mark, "saved");
+    assert!(!driver.file("configs/entered.ron").is_empty());
     driver.close();
 }
 

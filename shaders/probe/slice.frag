@@ -31,7 +31,7 @@ float opacityOf(VolumeMap map, vec3 seen, int axis, float position) {
     bool below = worldToVolume(map, camera.position)[axis] < position;
     if (below == (end[axis] < position)) return 0.0;
     // Bisection: under a warp the crossing is not linear along the ray.
-    for (int i = 0; i < 16; i++) {
+    for (int i = 0; i < 24; i++) {
         float middle = 0.5 * (from + to);
         bool is_before = (worldToVolume(map, mix(camera.position, seen, middle))[axis] < position) == below;
         if (is_before) from = middle;

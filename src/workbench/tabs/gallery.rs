@@ -180,9 +180,10 @@ impl Workbench {
             return;
         };
         let resources = &mut self.tabs.gallery.resources;
-        let title = format!("resources ({})", resources.len());
-        egui::CollapsingHeader::new(title).show(ui, |ui| {
-            ui.weak("kept as EXR next to the picture");
+        let title = format!("Also save textures ({})", resources.len());
+        let header = egui::CollapsingHeader::new(title).id_salt("textures");
+        header.show(ui, |ui| {
+            ui.weak("Saved as EXR next to the picture");
             for (name, _) in &info.graph.textures {
                 let mut chosen = resources.contains(name);
                 if ui.checkbox(&mut chosen, name).changed() {
