@@ -829,9 +829,9 @@ fn keys_open_tabs_compare_and_close_what_is_open() {
     driver.click_at((x, y + 20.0));
     let probed = driver.other_picture(mark, 0, &first);
     driver.click("", "File");
-    driver.texts_until("the menu", has("Save as…"));
+    driver.texts_until("the menu", has("Capture F12"));
     driver.keys(&[ESCAPE]);
-    driver.texts_until("no menu", misses("Save as…"));
+    driver.texts_until("no menu", misses("Capture F12"));
     driver.shows(&probed);
     let mark = driver.now();
     driver.keys(&[ESCAPE]);

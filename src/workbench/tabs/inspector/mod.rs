@@ -367,6 +367,9 @@ impl Workbench {
                 ui.selectable_value(&mut tone.channel, Channel::Luminance, "luminance");
             }
         });
+        if let Some(done) = &self.tabs.inspector.shown {
+            histogram::show(ui, done, tone);
+        }
         ui.add(
             Slider::new(&mut tone.stops, -12.0..=12.0)
                 .step_by(0.1)
@@ -414,8 +417,6 @@ impl Workbench {
                 format!("{nan} values are not a number (magenta), {infinite} are infinite (cyan)");
             ui.colored_label(ui.visuals().error_fg_color, text);
         }
-        let (before, mut tone) = (self.tabs.inspector.tone, self.tabs.inspector.tone);
-        histogram::show(ui, done, &mut tone);
         egui::Grid::new("values")
             .num_columns(6)
             .striped(true)
@@ -444,9 +445,6 @@ impl Workbench {
                     ui.end_row();
                 }
             });
-        self.tabs.inspector.tone = tone;
-        let inspector = &mut self.tabs.inspector;
-        inspector.show_again(before, false, &self.setup.wake);
     }
 }
 
