@@ -23,6 +23,8 @@ pub struct Graph {
     /// Parameters that the panel shows first: name, title. One that is retired is shown with what
     /// to write instead.
     pub pinned: Vec<(String, String)>,
+    /// Groups of parameters in the order of the panel; others follow.
+    pub groups: Vec<String>,
     /// Modules without a choice: name, file in the shader folder.
     pub modules: Vec<(String, String)>,
     /// Named values, each after those that it reads.

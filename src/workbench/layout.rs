@@ -79,7 +79,9 @@ impl Workbench {
             let before = side.graph.clone();
             let name = ["B", "A"][number.min(1)];
             let other = other.as_ref().map(|other| (name, other));
-            self.panel.show(ui, &info.graph, side, other, found);
+            let baseline = self.experiment.baseline.as_ref();
+            let file = baseline.filter(|_| number == 0).map(|b| &b.side);
+            self.panel.show(ui, &info.graph, side, other, found, file);
             if side.graph != before {
                 let side = side.clone();
                 self.desired.sides[number] = Some(self.with_graph(&side, &side.graph));

@@ -15,7 +15,8 @@ const RECENT: usize = 12;
 /// What of the state an experiment's file keeps, but for the camera.
 #[derive(Default, PartialEq)]
 pub(super) struct Edited {
-    side: SideRequest,
+    /// Parameters of A, without what the probe and the inspector show.
+    pub(super) side: SideRequest,
     scene: String,
     environment: String,
     lights: Option<LightState>,

@@ -24,6 +24,8 @@ pub struct GraphFile {
     pub fixed: Items<String>,
     /// Parameters that the panel shows first: name, title in plain words.
     pub pinned: Entries<String>,
+    /// Groups of parameters, in the order in which the panel shows them; others follow.
+    pub groups: Items<String>,
     /// Modules without a choice: name, file in the shader folder.
     pub modules: Entries<String>,
     /// Parameters that are no more, as in [`Retired`]: graphs in older captures carry their own

@@ -41,6 +41,7 @@ pub(super) fn add(all: &mut GraphFile, file: GraphFile) {
     all.buffers.0.extend(file.buffers.0);
     all.parts.0.extend(file.parts.0);
     all.fit.0.extend(file.fit.0);
+    all.groups.0.extend(file.groups.0);
     later(&mut all.output, file.output);
     later(&mut all.hdr, file.hdr);
     later(&mut all.scene, file.scene);

@@ -56,6 +56,7 @@ pub fn load(
         params,
         pinned: texts(&names.pinned),
         modules: texts(&names.modules),
+        groups: file.groups.0.into_iter().map(|g| g.value).collect(),
         textures,
         buffers: by_name(file.buffers),
         aliases: joined.aliases,

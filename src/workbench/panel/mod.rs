@@ -63,7 +63,8 @@ impl Panel {
         ui.memory_mut(|m| m.request_focus(search_id()));
     }
 
-    /// Shows the parameters of a side; edits go into it. `other` is the side it is compared with.
+    /// Shows the parameters of a side; edits go into it. `other` is the side it is compared with,
+    /// `file` the parameters of the opened file.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -71,8 +72,9 @@ impl Panel {
         side: &mut SideRequest,
         other: Option<(&'static str, &SideRequest)>,
         (found, old): (Option<&Found>, bool),
+        file: Option<&SideRequest>,
     ) {
-        self.top(ui, graph, side);
+        self.top(ui, graph, side, file);
         let wanted = Wanted {
             needle: folded(&self.search),
             only_changed: self.only_changed,
@@ -104,18 +106,21 @@ impl Panel {
         });
     }
 
-    fn top(&mut self, ui: &mut Ui, graph: &Graph, side: &mut SideRequest) {
+    fn top(
+        &mut self,
+        ui: &mut Ui,
+        graph: &Graph,
+        side: &mut SideRequest,
+        file: Option<&SideRequest>,
+    ) {
         let top = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(
             top,
             egui::Layout::right_to_left(egui::Align::Center),
             |ui| {
-                let any = graph.params.offered().any(|p| is_changed(graph, side, p));
-                let reset = egui::Button::new(RichText::new("Reset all")).small();
-                if ui.add_enabled(any, reset).clicked() {
-                    side.params.clear();
-                    side.off.clear();
-                }
+                ui.menu_button("Reset", |ui| reset_menu(ui, graph, side, file))
+                    .response
+                    .on_hover_text("Set all parameters back");
                 ui.checkbox(&mut self.only_changed, "changed")
                     .on_hover_text("Only parameters that are not at their default");
                 let clear = ui.add_enabled(
@@ -296,6 +301,28 @@ fn elsewhere(ui: &mut Ui, name: &str, title: &str, instead: &str, side: &mut Sid
     });
 }
 
+/// Sets all parameters back: to the opened file, or to the graph's defaults.
+fn reset_menu(ui: &mut Ui, graph: &Graph, side: &mut SideRequest, file: Option<&SideRequest>) {
+    let is_new = |file: &&SideRequest| (&file.params, &file.off) != (&side.params, &side.off);
+    let file = file.filter(|file| file.graph == side.graph).filter(is_new);
+    let button = egui::Button::new("To the opened file");
+    if ui.add_enabled(file.is_some(), button).clicked() {
+        if let Some(file) = file {
+            side.params.clone_from(&file.params);
+            side.off.clone_from(&file.off);
+        }
+        ui.close();
+    }
+    let any = graph.params.offered().any(|p| is_changed(graph, side, p));
+    let button = egui::Button::new("To the graph's defaults");
+    if ui.add_enabled(any, button).clicked() {
+        side.params.clear();
+        side.off.clear();
+        ui.close();
+    }
+}
+
+/// The groups of parameters, in the graph's order.
 fn groups(graph: &Graph) -> Vec<&str> {
     let mut groups: Vec<&str> = Vec::new();
     for param in graph.params.offered() {
@@ -303,6 +330,9 @@ fn groups(graph: &Graph) -> Vec<&str> {
             groups.push(&param.group);
         }
     }
+    // The sort keeps the order of groups that the graph does not name.
+    let place = |group: &&str| graph.groups.iter().position(|g| g == group);
+    groups.sort_by_key(|group| place(group).unwrap_or(usize::MAX));
     groups
 }
 
