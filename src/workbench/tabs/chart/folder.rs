@@ -40,14 +40,20 @@ pub struct Folder {
 impl Folder {
     /// Begins to read a folder.
     pub fn open(path: PathBuf, wake: &Wake) -> Folder {
-        let mut work = Background::default();
-        let folder = path.clone();
-        work.start((), wake, move || collect(&[folder]).map(|c| Data::new(&c)));
-        Folder {
+        let mut folder = Folder {
             path,
             data: None,
-            work,
-        }
+            work: Background::default(),
+        };
+        folder.read(wake);
+        folder
+    }
+
+    /// Reads the folder again. The old data stays until then.
+    pub fn read(&mut self, wake: &Wake) {
+        let folder = self.path.clone();
+        let read = move || collect(&[folder]).map(|c| Data::new(&c));
+        self.work.start((), wake, read);
     }
 
     /// Takes in the data. Returns whether it came now.

@@ -16,13 +16,14 @@ use crate::graph::param::Params;
 use crate::lab::parts_of;
 use crate::metrics::Metric;
 use crate::workbench::Workbench;
+use crate::workbench::background::Wake;
 use crate::workbench::engine::report::Report;
 use crate::workbench::panel::control::named;
 use choice::{Choice, Chosen};
 use egui::{TextureId, Ui};
 use folder::Folder;
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -107,6 +108,10 @@ impl Workbench {
             self.tabs.chart.folder.as_ref().map(|f| &f.path),
             self.tabs.chart.choice
         );
+        if data.is_none() && lives.iter().all(Option::is_none) {
+            // Axes without a point mean nothing.
+            return self.live_rows(ui, &title, &lives);
+        }
         let drawn = plot::show(ui, &name, height, &shown);
         if !differences.is_empty() {
             let text = format!("the sweep differs: {}", differences.join(", "));
@@ -114,6 +119,7 @@ impl Workbench {
                 "Errors of different pictures cannot be compared. A click on a dot goes there.",
             );
         }
+        ui.weak("Lower is better. Red: Pareto front; hollow: within the reference's noise; diamonds: A, B.");
         self.live_rows(ui, &title, &lives);
         let Some(data) = data else { return };
         let scored = drawn.hovered.map(|i| &self.tabs.chart.chosen.dots[i]);
@@ -182,7 +188,7 @@ impl Workbench {
         }
         match chart.folder.as_ref().map(|f| &f.data) {
             None => drop(ui.weak(
-                "There is no sweep in captures/sweeps yet: `conelab sweep configs/sweeps/cones.ron` makes one.",
+                "Right click a parameter and choose Sweep, or run `conelab sweep`: the points appear here.",
             )),
             Some(None) => drop(ui.weak("reading")),
             Some(Some(Err(why))) => drop(ui.colored_label(ui.visuals().error_fg_color, why)),
@@ -316,6 +322,19 @@ fn experiment_params(experiment: &Experiment) -> Value {
 
 /// The data of the folder that is shown.
 impl Chart {
+    /// Shows a sweep, and reads it again if it is shown already.
+    pub(in crate::workbench) fn follow(&mut self, path: &Path, wake: &Wake) {
+        match self.folder.as_mut().filter(|f| f.path == path) {
+            Some(folder) => folder.read(wake),
+            None => {
+                self.folder = Some(Folder::open(path.into(), wake));
+                self.folders = None;
+                self.chosen.forget();
+                (self.choice.subject, self.by_hand) = (0, false);
+            }
+        }
+    }
+
     fn data(&self) -> Option<&Arc<Data>> {
         self.folder.as_ref()?.data.as_ref()?.as_ref().ok()
     }
