@@ -491,6 +491,14 @@ impl WindowDriver {
         self.fake(5, 1, at);
     }
 
+    /// Clicks the right button on a widget.
+    pub fn right_click(&mut self, role: &str, label: &str) {
+        let at = centre(self.find(role, label));
+        self.fake(6, 0, at);
+        self.fake(4, 3, at);
+        self.fake(5, 3, at);
+    }
+
     /// Presses at one place and releases at another.
     pub fn drag(&self, from: (f64, f64), to: (f64, f64)) {
         self.fake(6, 0, from);

@@ -10,7 +10,8 @@ use crate::workbench::desired::edit;
 use crate::workbench::desired::request::SideRequest;
 use control::{Look, control, label, label_width, named, reset_button, small_button};
 use effects::Found;
-use egui::{RichText, Ui, WidgetType};
+use egui::{Button, RichText, Ui, WidgetType};
+use std::cell::RefCell;
 
 /// What of the panel is not part of the experiment.
 #[derive(Default)]
@@ -21,6 +22,8 @@ pub struct Panel {
     pub search: String,
     /// Whether only changed parameters are shown.
     pub only_changed: bool,
+    /// The parameter that a sweep was asked of.
+    pub sweep: Option<String>,
     /// Whether it had them when it was shown last: Esc has taken them by then.
     pub typing: bool,
 }
@@ -33,6 +36,8 @@ struct Shown<'a> {
     old: bool,
     /// Name and values of the side that it is compared with.
     other: Option<(&'static str, &'a SideRequest)>,
+    /// Takes the parameter that a sweep is asked of.
+    sweep: RefCell<&'a mut Option<String>>,
 }
 
 /// The parameters that a search finds.
@@ -84,6 +89,7 @@ impl Panel {
             found,
             old,
             other,
+            sweep: RefCell::new(&mut self.sweep),
         };
         // Wide rows scroll: they must not make the panel wider.
         egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
@@ -259,6 +265,17 @@ impl Shown<'_> {
                 auto,
             };
             let response = control(ui, param, title, &mut value, &look);
+            row_menu(ui, &response).show(|ui| {
+                if ui.button("Sweep…").clicked() {
+                    **self.sweep.borrow_mut() = Some(param.name.clone());
+                }
+                if ui.add_enabled(changed, Button::new("Reset")).clicked() {
+                    value = param.default.clone();
+                }
+                if ui.button("Copy name").clicked() {
+                    ui.ctx().copy_text(param.name.clone());
+                }
+            });
             response.on_hover_ui(|ui| help(ui, param, idle));
             if reset_button(ui, changed, &param.name) {
                 value = param.default.clone();
@@ -277,6 +294,16 @@ impl Shown<'_> {
             edit::set(side, param, &value);
         }
     }
+}
+
+/// The menu of a row; a right click anywhere in the row opens it.
+fn row_menu<'a>(ui: &Ui, response: &'a egui::Response) -> egui::Popup<'a> {
+    let row = ui.max_rect().with_max_y(response.rect.bottom());
+    let clicked = ui.rect_contains_pointer(row) && ui.input(|i| i.pointer.secondary_clicked());
+    let opens = clicked.then_some(egui::SetOpenCommand::Bool(true));
+    egui::Popup::menu(response)
+        .open_memory(opens)
+        .at_pointer_fixed()
 }
 
 /// A parameter that another graph has; a button goes there, where the graph's text begins with its

@@ -6,6 +6,7 @@ pub(crate) mod gallery;
 pub(crate) mod inspector;
 pub(crate) mod nodes;
 pub(crate) mod paths;
+pub(crate) mod runs;
 mod sequence;
 mod shader_files;
 mod shader_values;
@@ -68,10 +69,11 @@ impl Entry {
 }
 
 /// The tabs, in order.
-pub(crate) const TABS: [Entry; 8] = [
+pub(crate) const TABS: [Entry; 9] = [
     Entry::of::<surroundings::Surroundings>(),
     Entry::of::<times::Times>(),
     Entry::of::<chart::Chart>(),
+    Entry::of::<runs::Runs>(),
     Entry::of::<nodes::Nodes>(),
     Entry::of::<inspector::Inspector>(),
     Entry::of::<tables::Tables>(),
@@ -85,6 +87,7 @@ pub(crate) struct Tabs {
     pub(crate) surroundings: surroundings::Surroundings,
     pub(crate) times: times::Times,
     pub(crate) chart: chart::Chart,
+    pub(crate) runs: runs::Runs,
     pub(crate) nodes: nodes::Nodes,
     pub(crate) inspector: inspector::Inspector,
     pub(crate) tables: tables::Tables,
