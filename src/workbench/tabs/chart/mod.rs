@@ -188,7 +188,7 @@ impl Workbench {
         }
         match chart.folder.as_ref().map(|f| &f.data) {
             None => drop(ui.weak(
-                "Right click a parameter and choose Sweep, or run `conelab sweep`: the points appear here.",
+                "Right click a parameter and choose Sweep… to measure several of its values; the points appear here.",
             )),
             Some(None) => drop(ui.weak("reading")),
             Some(Some(Err(why))) => drop(ui.colored_label(ui.visuals().error_fg_color, why)),

@@ -58,8 +58,7 @@ impl Kind {
             Kind::Sweep => folder.join("sweep.csv"),
             Kind::Stability => folder.join("stability.csv"),
             Kind::Bench => folder.join("bench.csv"),
-            // The command writes none: the report of its trials has one.
-            Kind::Fit => trials(folder).join("report/points.csv"),
+            Kind::Fit => trials(folder).join("sweep.csv"),
         }
     }
 
