@@ -34,6 +34,9 @@ const SHARES: [f32; 3] = [0.205, 0.56, 0.235];
 /// Titles of the tabs in the upper of two stacks at the right.
 const UPPER: [&str; 4] = ["Scene", "Graph", "Inspect", "Tables"];
 
+/// Titles of the tabs in the middle: they need its width.
+const WIDE: [&str; 1] = ["Runs"];
+
 /// Where the panes are.
 pub(crate) struct Dock {
     tree: Tree<Pane>,
@@ -112,12 +115,14 @@ impl Dock {
 fn default_tree() -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let parameters = tiles.insert_pane(Pane::Parameters);
-    let middle = MIDDLE.map(|pane| tiles.insert_pane(pane)).to_vec();
+    let wide = WIDE.map(|title| Pane::Tab(title.into()));
+    let middle = MIDDLE.into_iter().chain(wide);
+    let middle: Vec<TileId> = middle.map(|pane| tiles.insert_pane(pane)).collect();
     let middle = tiles.insert_tab_tile(middle);
     let mut stack = |upper: bool| {
         let of = TABS
             .iter()
-            .filter(|tab| UPPER.contains(&tab.title) == upper);
+            .filter(|tab| !WIDE.contains(&tab.title) && UPPER.contains(&tab.title) == upper);
         let tabs: Vec<TileId> = of
             .map(|tab| tiles.insert_pane(Pane::Tab(tab.title.into())))
             .collect();
@@ -300,7 +305,7 @@ mod tests {
             tiles.filter(|tile| matches!(tile, Tile::Pane(_))).count()
         };
         assert_eq!(count(dock.tree()), TABS.len() + MIDDLE.len() + 1);
-        for title in UPPER {
+        for title in UPPER.into_iter().chain(WIDE) {
             assert!(entry(title).is_some(), "{title}");
         }
         let text = ron::to_string(dock.tree()).unwrap();
