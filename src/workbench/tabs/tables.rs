@@ -62,6 +62,11 @@ impl Tab for Tables {
 }
 
 impl Tables {
+    /// Shows a table, by its number in the graph.
+    pub(super) fn choose(&mut self, number: usize) {
+        (self.chosen, self.filter, self.shows_values) = (number, None, false);
+    }
+
     /// Takes in the content of a table's buffer.
     fn note(&mut self, number: usize, table: Table, bytes: Vec<u8>) {
         self.came = Some(Came {

@@ -34,7 +34,8 @@ impl Thumbnail {
             }
         }
         let texture = self.texture.clone();
-        chart.clone().on_hover_ui_at_pointer(|ui| {
+        // Next to the chart: at the pointer it would cover other dots.
+        chart.clone().on_hover_ui(|ui| {
             if let Some(texture) = &texture {
                 ui.image((texture.id(), texture.size_vec2()));
             }

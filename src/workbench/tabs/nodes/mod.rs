@@ -3,6 +3,9 @@
 mod layout;
 
 use super::Tab;
+use super::tables::Tables;
+use crate::diagnostics::Loc;
+use crate::graph::file::TableDecl;
 use crate::workbench::Workbench;
 use crate::workbench::desired::edit;
 use crate::workbench::dock::Pane;
@@ -381,11 +384,23 @@ impl Workbench {
             ui.label(title);
             for resource in list {
                 let texture = info.graph.texture(resource);
-                let about = texture.map_or(String::new(), |t| of(info, t));
+                let is_of = |t: &Loc<TableDecl>| t.value.list.value.buffer == *resource;
+                let table = info.graph.tables.iter().position(is_of);
+                let about = texture.map_or("buffer".into(), |t| of(info, t));
+                if texture.is_none() && table.is_none() {
+                    ui.weak(format!("{resource}  {about}"))
+                        .on_hover_text("No table of the graph shows this buffer");
+                    continue;
+                }
                 let button = egui::Button::new(format!("{resource}  {about}")).small();
-                let row = ui.add_enabled(texture.is_some(), button.frame(false));
-                if row.clicked() {
-                    self.inspect(side, resource.clone());
+                let row = ui.add(button.frame(false));
+                match table {
+                    _ if !row.clicked() => {}
+                    None => self.inspect(side, resource.clone()),
+                    Some(table) => {
+                        self.tabs.tables.choose(table);
+                        self.dock.open_tab::<Tables>();
+                    }
                 }
             }
         }
