@@ -1,14 +1,15 @@
 //! Reconciles a side with the desired state: sets values, or swaps in a build.
 
-use super::Run;
 use super::builder::{Done, Job, Key};
 use super::converge::Need;
 use super::report::{BuiltReport, GraphInfo, PassUses, Report};
+use super::{Run, Side};
 use crate::diagnostics::{Diagnostic, Place};
 use crate::lab::{LabError, Loaded, Session, light_counts, params_of};
 use crate::scene::{Light, Scene};
 use crate::vulkan::VulkanError;
 use crate::workbench::desired::request::SideRequest;
+use crate::workbench::desired::save;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -86,10 +87,14 @@ impl Run<'_> {
         match self.set_values(number, &key) {
             Ok(true) => {
                 let side = &mut self.sides[number];
+                let need = match &side.key {
+                    Some(old) if side.differ_by_cursors(old, &key) => Need::Frames(1),
+                    _ => Need::Light,
+                };
                 (side.key, side.failed, side.answered) = (Some(key), None, self.number);
                 self.out.send(Report::Set { side: number });
                 self.request_frames_of(1 - number, Need::Frames(1));
-                self.request_frames_of(number, Need::Light);
+                self.request_frames_of(number, need);
                 Ok(())
             }
             Ok(false) => {
@@ -168,8 +173,9 @@ impl Run<'_> {
         match done.result {
             Ok((session, loaded)) => {
                 let key = (!done.preview).then_some(&done.key);
-                let need = self.sides[number].key.as_ref();
-                let need = need.map_or(Need::Light, |key| need_of(key, &done.key));
+                let side = &self.sides[number];
+                let old = side.key.as_ref();
+                let need = old.map_or(Need::Light, |old| side.need_of(old, &done.key));
                 self.swap_in(number, session, loaded, key, done.start)?;
                 self.request_frames_of(1 - number, Need::Frames(1));
                 self.request_frames_of(number, need);
@@ -243,17 +249,28 @@ impl Run<'_> {
     }
 }
 
-/// The frames that a build needs if it replaces another one.
-fn need_of(old: &Key, new: &Key) -> Need {
-    let same = Key {
-        size: new.size,
-        wanted: new.wanted.clone(),
-        ..old.clone()
-    };
-    if same == *new {
-        Need::View
-    } else {
-        Need::Light
+impl Side {
+    /// The frames that a build needs if it replaces another one.
+    fn need_of(&self, old: &Key, new: &Key) -> Need {
+        let same = Key {
+            size: new.size,
+            wanted: new.wanted.clone(),
+            ..old.clone()
+        };
+        match same == *new || self.differ_by_cursors(&same, new) {
+            true => Need::View,
+            false => Need::Light,
+        }
+    }
+
+    /// Whether two builds have the same light: only what they show over the picture differs.
+    fn differ_by_cursors(&self, old: &Key, new: &Key) -> bool {
+        let graph = self.loaded.as_ref().map(|l| &*l.graph);
+        let bare = |key: &Key| Key {
+            side: save::without_cursors(&key.side, graph),
+            ..key.clone()
+        };
+        bare(old) == bare(new)
     }
 }
 

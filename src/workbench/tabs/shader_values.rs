@@ -31,21 +31,23 @@ impl Workbench {
             ui.weak("…");
             return true;
         };
-        egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-            self.value_rows(ui, "values", &debug.values);
-            if debug.lost > 0 {
-                let text = format!("{} more values do not fit", debug.lost);
-                ui.colored_label(ui.visuals().warn_fg_color, text);
-            }
-            if debug.values.is_empty() {
-                ui.weak("No values: click on the picture");
-            }
-            ui.add_space(8.0);
-            match debug.failed.is_empty() {
-                true => drop(ui.weak("No check failed")),
-                false => self.value_rows(ui, "failed checks", &debug.failed),
-            }
-        });
+        egui::ScrollArea::vertical()
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                self.value_rows(ui, "values", &debug.values);
+                if debug.lost > 0 {
+                    let text = format!("{} more values do not fit", debug.lost);
+                    ui.colored_label(ui.visuals().warn_fg_color, text);
+                }
+                if debug.values.is_empty() {
+                    ui.weak("No values: click on the picture");
+                }
+                ui.add_space(8.0);
+                match debug.failed.is_empty() {
+                    true => drop(ui.weak("No check failed")),
+                    false => self.value_rows(ui, "failed checks", &debug.failed),
+                }
+            });
         true
     }
 
@@ -54,17 +56,16 @@ impl Workbench {
             return;
         }
         ui.strong(title);
-        egui::Grid::new(title)
-            .num_columns(4)
-            .striped(true)
-            .show(ui, |ui| {
-                for row in rows {
-                    ui.label(&row.name);
-                    ui.monospace(&row.value);
-                    ui.label(&row.pass);
-                    self.editor_link(ui, &row.file, row.line);
-                    ui.end_row();
-                }
+        for row in rows {
+            ui.horizontal_wrapped(|ui| {
+                ui.label(format!("{}:", row.name));
+                ui.monospace(&row.value);
             });
+            ui.horizontal_wrapped(|ui| {
+                ui.add_space(12.0);
+                ui.weak(&row.pass);
+                self.editor_link(ui, &row.file, row.line);
+            });
+        }
     }
 }
