@@ -483,7 +483,7 @@ fn frames_are_frozen_and_held() {
     // The newest frame is at the right edge of the bars.
     let chart = driver.find("", "A, frames");
     let (_, y) = centre(chart);
-    driver.click_at((chart[0] + 0.77 * (chart[2] - chart[0]), y));
+    driver.click_at((chart[0] + 0.72 * (chart[2] - chart[0]), y));
     let held = |t: &String| t.starts_with("frame ") && t.ends_with(" is held, ms");
     driver.texts_until("the held frame", |texts| texts.iter().any(held));
     driver.click("", "Show means");

@@ -96,7 +96,7 @@ impl Workbench {
         let differences = self.differences(data.as_deref());
         let title = self.tabs.chart.choice.metric.axis();
         let lives = [0, 1].map(|side| self.tabs.chart.live.dot(side, self.sent.number));
-        let height = (ui.available_height() - 150.0).clamp(160.0, 520.0);
+        let height = (ui.available_height() - 195.0).clamp(120.0, 520.0);
         let shown = plot::Shown {
             chosen: &self.tabs.chart.chosen,
             fits: differences.is_empty(),
