@@ -72,8 +72,7 @@ enum Command {
     Screenshot(screenshot::ScreenshotArgs),
     /// Render an experiment to a picture, and its timings to JSON.
     Render(render::RenderArgs),
-    /// Render an experiment and keep it: pictures, sources, settings and measurements in
-    /// captures/NAME.
+    /// Render an experiment and save pictures, sources, settings and measurements to captures/NAME.
     Capture(capture::CaptureArgs),
     /// Render a capture again from its own sources and compare every texel; exit 1 on any
     /// difference.
@@ -81,19 +80,17 @@ enum Command {
     /// Time configurations round by round and print tables of their stages and totals, or compare
     /// with recorded times. Exit 1 if one failed or became slower.
     Bench(bench::BenchArgs),
-    /// Measure every combination of a sweep file; continues a stopped sweep. Exit 1 if points
-    /// failed.
+    /// Measure every combination of a sweep file. Resumable. Exit 1 if points failed.
     Sweep(sweep::SweepArgs),
-    /// Look at methods while camera, actors or light move, frame by frame against the reference;
-    /// goes on where it was stopped. Exit 1 if one failed.
+    /// Measure temporal stability against the reference while camera, objects or lights move. Resumable. Exit 1 if a case failed.
     Stability(stability::StabilityArgs),
-    /// Make a page, charts and a table of sweeps: error against time.
+    /// Write a page with charts and a table of sweeps: error against time.
     Report(report::ReportArgs),
     /// Compare pictures or experiments with a reference: table, JSON, maps of the error.
     Compare(compare::CompareArgs),
     /// Save an experiment under a new name, with only the differences from the graph's defaults.
     Save(save::SaveArgs),
-    /// Gather a path-traced reference for an experiment, into captures/reference.
+    /// Path-trace a reference for an experiment, into captures/reference.
     Reference(reference::ReferenceArgs),
     /// Find the cheapest setting of an experiment that stays within an error, or the best within a
     /// time.
@@ -129,11 +126,11 @@ struct DeviceArgs {
     /// Part of a device's name, or its number in `conelab devices`.
     #[arg(long, env = "CONELAB_DEVICE")]
     device: Option<String>,
-    /// Turn on the Vulkan validation layer; any message is an error.
+    /// Enable the Vulkan validation layer; any message is an error.
     #[arg(long, env = "CONELAB_VALIDATION")]
     validate: bool,
     /// Seconds that a frame may take before the device counts as hung (ten times as long on a
-    /// software device); 20 in the window, without end elsewhere.
+    /// software device); default: 20 in the window, no limit otherwise.
     #[arg(long, env = "CONELAB_HANG_AFTER", value_name = "SECONDS", value_parser = seconds)]
     hang_after: Option<Duration>,
 }

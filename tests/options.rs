@@ -203,6 +203,7 @@ fn options(param: &Param) -> Vec<String> {
         (_, "volume_offset") => "(1.5, 0, 0.5)".into(),
         (_, "volume_turn") => "30".into(),
         (_, "probe") => "(16, 12)".into(),
+        (_, "slice") => "(2, 0.5)".into(),
         (_, "volume_size") => "(8, 8, 8)".into(),
         // The scene has no sun: 0 is 1 there.
         (_, "injection_exposure") => "3".into(),

@@ -34,7 +34,7 @@ pub struct AblateArgs {
     /// Runs of the unchanged experiment. Their spread is the noise of times.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(2..=100), conflicts_with = "steps")]
     runs: u32,
-    /// Frames before those that are timed; on a GPU more, until it has worked for 100 ms.
+    /// Warm-up frames before the timed ones (extended to 100 ms on GPUs).
     #[arg(long, default_value_t = 10, conflicts_with = "steps")]
     warmup: usize,
     /// Folder of the results; captures/ablations/NAME when absent. Finished points in it are not
@@ -45,7 +45,7 @@ pub struct AblateArgs {
     /// the error.
     #[arg(long)]
     steps: bool,
-    /// Samples of every pixel of the references, if more are needed than are there.
+    /// Samples per pixel of the references, if cached ones have fewer.
     #[arg(long, default_value_t = 256)]
     spp: u64,
     /// Bounces of the references.

@@ -21,20 +21,20 @@ pub struct ExperimentArgs {
 /// Changes of the command line to an experiment.
 #[derive(Clone, Debug, Default, PartialEq, Args)]
 pub struct Changes {
-    /// Another scene: a built-in name, a scene RON, or a model file.
+    /// Scene to use: a built-in name, a scene file (.ron) or a model.
     #[arg(long, value_parser = super::spec())]
     scene: Option<String>,
-    /// Another camera of the scene, or one written out: "(eye: (0, 1, 5), target: (0, 1, 0), fov_y:
+    /// Camera: a name in the scene, or one written out: "(eye: (0, 1, 5), target: (0, 1, 0), fov_y:
     /// 60)".
     #[arg(long)]
     camera: Option<String>,
     /// Picture size.
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
-    /// Set a parameter; may be given many times.
+    /// Set a parameter (repeatable).
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
-    /// Another picture of the sky: an equirectangular HDR or EXR file.
+    /// Sky: an equirectangular .hdr or .exr file.
     #[arg(long, value_name = "FILE")]
     environment: Option<String>,
     /// Rotation of the sky's picture about y, degrees.

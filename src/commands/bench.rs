@@ -27,28 +27,26 @@ pub struct BenchArgs {
     /// Experiment files. With --against only these of the record, all when none is given.
     #[arg(required_unless_present = "against")]
     experiments: Vec<PathBuf>,
-    /// Another scene: a built-in name, a scene RON, or a model file.
+    /// Scene to use: a built-in name, a scene file (.ron) or a model.
     #[arg(long)]
     scene: Option<String>,
     /// Picture sizes: 720p, 900p, 1080p, 1440p, 2160p or WIDTHxHEIGHT; the experiments' own when
     /// absent.
     #[arg(long, value_delimiter = ',')]
     sizes: Vec<String>,
-    /// Set a parameter in every configuration; may be given many times.
+    /// Set a parameter in every configuration (repeatable).
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<String>,
-    /// A setting and its values; may be given many times. The first makes the columns of the
-    /// tables.
+    /// Vary a parameter (repeatable). The first one becomes the columns.
     #[arg(long, value_name = "NAME=V1,V2")]
     axis: Vec<String>,
-    /// How often every configuration has its turn; 5 or as recorded when absent.
+    /// Number of rounds. Default: 5, or as recorded.
     #[arg(long)]
     rounds: Option<usize>,
-    /// Frames of every turn; 40 or as recorded when absent.
+    /// Frames per round. Default: 40, or as recorded.
     #[arg(long)]
     frames: Option<usize>,
-    /// Frames before those of every turn; on a GPU more, until it has worked for 100 ms. 10 or as
-    /// recorded when absent.
+    /// Warm-up frames per round (extended to 100 ms on GPUs). Default: 10, or as recorded.
     #[arg(long)]
     warmup: Option<usize>,
     /// Record the times of this device: a .json file, or a folder with one file for each device.

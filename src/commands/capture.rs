@@ -18,17 +18,17 @@ pub struct CaptureArgs {
     /// that name.
     #[arg(long)]
     name: Option<String>,
-    /// Keep this texture too; may be given many times.
+    /// Also save this texture (repeatable).
     #[arg(long, value_name = "NAME[:MIP[:LAYER]]")]
     resource: Vec<String>,
     /// Frames to run; the last is captured. When absent: the frames that the graph needs to
     /// converge, or one with --step.
     #[arg(long)]
     frames: Option<usize>,
-    /// Time from frame to frame, s.
+    /// Time step between frames, s.
     #[arg(long, default_value_t = 0.0)]
     step: f64,
-    /// Keep the picture with the GPU's times on it too, of the graph's stages or of every pass.
+    /// Also save the picture with GPU times on it, of stages or of all passes.
     #[arg(long, value_enum, value_name = "ROWS")]
     timers: Option<Rows>,
     #[command(flatten)]

@@ -28,13 +28,13 @@ pub struct CompareArgs {
     /// reference of A where A is an experiment and has one, or `none`.
     #[arg(long, default_value = "auto")]
     reference: PathBuf,
-    /// Bounces of the cached reference: all that matter unless given; then it must be there.
+    /// Use the cached reference with this number of bounces; an error if there is none.
     #[arg(long)]
     bounces: Option<u32>,
-    /// Compare only this part; may be given many times.
+    /// Compare only this part (repeatable).
     #[arg(long)]
     part: Vec<String>,
-    /// Score the light pixels of this picture apart; may be given many times.
+    /// Score the white pixels of this mask separately (repeatable).
     #[arg(long, value_name = "NAME=FILE")]
     mask: Vec<String>,
     /// Frames of an experiment to run; the last is compared. When absent: the frames that its graph

@@ -39,17 +39,17 @@ pub struct FitArgs {
     /// Part of the light that is compared.
     #[arg(long, default_value = "total")]
     part: String,
-    /// Vary this parameter over these values, neighbours alike; may be given many times. The
-    /// graph's own list when absent.
+    /// Vary this parameter over these values, neighbours similar (repeatable). Default: the graph's
+    /// own list.
     #[arg(long, value_name = "NAME=VALUE,VALUE")]
     vary: Vec<String>,
-    /// Most settings to try.
+    /// Maximum number of settings.
     #[arg(long, default_value_t = 400)]
     evaluations: usize,
     /// Frames that are timed for each setting.
     #[arg(long, default_value_t = 9)]
     frames: usize,
-    /// Frames before them; on a GPU more, until it has worked for 100 ms.
+    /// Warm-up frames before them (extended to 100 ms on GPUs).
     #[arg(long, default_value_t = 3)]
     warmup: usize,
     /// Samples of every pixel of the reference, if more are needed than are there.

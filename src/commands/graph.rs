@@ -26,7 +26,7 @@ pub struct GraphArgs {
     /// Picture size; the experiment's, or 1280x720, when absent.
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
-    /// Set a parameter; may be given many times.
+    /// Set a parameter (repeatable).
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<String>,
     /// Resources that are wanted besides the picture.

@@ -15,16 +15,13 @@ use std::sync::Arc;
 pub struct ReferenceArgs {
     #[command(flatten)]
     experiment: ExperimentArgs,
-    /// Samples of every pixel, in all; rounded up to a multiple of 32. 256 when neither this nor
-    /// --until is given.
+    /// Samples per pixel in total; rounded up to a multiple of 32. Default without --until: 256.
     #[arg(long, value_name = "N", conflicts_with = "until")]
     spp: Option<u64>,
-    /// Go on until the total's relMSE against the converged reference, estimated from two halves of
-    /// the samples, is at most this.
+    /// Continue until the estimated relMSE against the converged reference is at most this (from two halves of the samples).
     #[arg(long, value_name = "RELMSE")]
     until: Option<f64>,
-    /// Turns of a path behind the first surface: all that matter when absent; 1 is what cones
-    /// gather of one bounce.
+    /// Maximum bounces after the first hit. 1: the single bounce that cones gather.
     #[arg(long, default_value_t = ALL_BOUNCES)]
     bounces: u32,
     /// Write the mean of a part to this file too (.exr).

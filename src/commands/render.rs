@@ -19,7 +19,7 @@ use std::sync::Arc;
 pub struct RenderArgs {
     #[command(flatten)]
     experiment: ExperimentArgs,
-    /// Time from frame to frame, s.
+    /// Time step between frames, s.
     #[arg(long, default_value_t = 0.0)]
     step: f64,
     /// Frames to run and time; 1 when absent.

@@ -23,7 +23,7 @@ pub struct ScreenshotArgs {
     /// Size of the whole interface, pixels.
     #[arg(long, value_name = "WxH", default_value = "1600x900")]
     window: String,
-    /// Pixels a point.
+    /// Pixels per point.
     #[arg(long, default_value_t = 1.0)]
     scale: f32,
     /// Theme of the interface: dark or light.
@@ -32,7 +32,7 @@ pub struct ScreenshotArgs {
     /// Write the texts of the picture to this file (JSON): size in points, colour, place in pixels.
     #[arg(long, value_name = "FILE")]
     texts: Option<PathBuf>,
-    /// Click on the widget with this label, or at X,Y; may be given many times.
+    /// Click on the widget with this label, or at X,Y (repeatable).
     #[arg(long, value_name = "LABEL")]
     click: Vec<String>,
     /// Measure this number of frames of the interface and print their times.
@@ -50,10 +50,10 @@ pub struct ScreenshotArgs {
     /// as it was.
     #[arg(long, value_name = "FILE", requires_all = ["from", "to"])]
     edit: Option<PathBuf>,
-    /// A text that stands once in the edited file.
+    /// A text that occurs once in the edited file.
     #[arg(long, value_name = "TEXT", requires = "edit")]
     from: Option<String>,
-    /// What takes its place, in every second save.
+    /// Its replacement, in every second save.
     #[arg(long, value_name = "TEXT", requires = "edit")]
     to: Option<String>,
     /// Saves to measure.

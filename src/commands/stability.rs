@@ -28,11 +28,10 @@ pub struct StabilityArgs {
     /// Picture size, instead of the suite's.
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
-    /// Frames of the cases that do not say themselves, instead of the suite's.
+    /// Frames of cases without their own number, instead of the suite's.
     #[arg(long)]
     frames: Option<usize>,
-    /// Samples a pixel of every frame's reference, instead of the suite's; rounded up to a multiple
-    /// of 32.
+    /// Samples per pixel of each frame's reference, instead of the suite's; rounded up to a multiple of 32.
     #[arg(long, value_name = "SAMPLES")]
     spp: Option<u64>,
     /// Trace no references: only static cases are scored.

@@ -24,15 +24,13 @@ pub struct SweepArgs {
     /// Frames of every point, instead of the file's.
     #[arg(long)]
     frames: Option<usize>,
-    /// Frames before those of every point, instead of the file's; on a GPU more, until it has
-    /// worked for 100 ms.
+    /// Warm-up frames per point, instead of the file's (extended to 100 ms on GPUs).
     #[arg(long)]
     warmup: Option<usize>,
-    /// Gather the references of the points to this many samples a pixel first; those that are
-    /// cached are used as they are when absent.
+    /// First path-trace the references of the points to this number of samples per pixel. Without it, cached references are used as they are.
     #[arg(long, value_name = "SAMPLES")]
     reference: Option<u64>,
-    /// Measure points again that have failed.
+    /// Measure failed points again.
     #[arg(long)]
     again: bool,
     #[command(flatten)]
