@@ -110,7 +110,7 @@ fn run(home: &Path, wanted: &[&str]) -> Session {
     let lab = common::lab(home);
     let experiment = Experiment::read(&home.join("configs/run.ron")).unwrap();
     let mut session = prepare(&lab, &experiment, wanted);
-    // Each frame records anew.
+    // Each frame records its own values.
     session.run(3).unwrap();
     assert_clean(&lab);
     session

@@ -33,7 +33,7 @@ pub(crate) fn debug_names(shader: &str, texts: &BTreeMap<String, String>) -> Vec
 /// The files of a shader with numbers in place of names, and these names.
 ///
 /// # Errors
-/// The first call whose name is no string.
+/// The first call without a string for its name.
 pub(super) fn numbered(
     shader: &str,
     texts: &BTreeMap<String, String>,

@@ -15,7 +15,7 @@ const RECENT: usize = 12;
 /// What of the state an experiment's file keeps, but for the camera.
 #[derive(Default, PartialEq)]
 pub(super) struct Edited {
-    /// Parameters of A, without what the probe and the inspector show.
+    /// Parameters of A, without the probe and the slice.
     pub(super) side: SideRequest,
     scene: String,
     environment: String,

@@ -35,7 +35,7 @@ pub struct TextureDecl {
     pub parts: Parts,
 }
 
-/// Names of volumes that lie in one texture, one after the other along x and along z. Each is a cube
+/// Names of volumes that share a texture, one after the other along x and along z. Each is a cube
 /// with the edge of the texture's height.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]

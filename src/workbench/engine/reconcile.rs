@@ -263,7 +263,7 @@ impl Side {
         }
     }
 
-    /// Whether two builds have the same light: only what they show over the picture differs.
+    /// Whether two builds have the same light and differ only by the probe or the slice.
     fn differ_by_cursors(&self, old: &Key, new: &Key) -> bool {
         let graph = self.loaded.as_ref().map(|l| &*l.graph);
         let bare = |key: &Key| Key {

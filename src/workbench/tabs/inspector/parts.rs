@@ -1,4 +1,4 @@
-//! Volumes that lie in one texture: borders and names.
+//! Volumes that share a texture: borders and names.
 
 use crate::graph::file::Parts;
 use crate::workbench::desired::request::InspectTarget;

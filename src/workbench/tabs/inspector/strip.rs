@@ -24,7 +24,7 @@ pub struct Strip {
     work: Background<InspectTarget, ColorImage>,
 }
 
-/// What a click on the strip asks for.
+/// The effect of a click on the strip.
 enum Click {
     Open(InspectTarget, Option<Tone>),
     Unpin(usize),
@@ -139,7 +139,8 @@ impl Workbench {
             ui.set_width(size.x);
             let button = match texture {
                 Some(texture) => {
-                    let image = egui::Image::new(texture).fit_to_exact_size(size);
+                    let image =
+                        egui::Image::new(texture).fit_to_exact_size(size - Vec2::splat(8.0));
                     ui.add_sized(size, egui::Button::image(image))
                 }
                 None => ui.add_sized(size, egui::Button::new("…")),
