@@ -2,7 +2,7 @@
 //! compilation each name becomes a number, on the same line.
 
 use std::collections::BTreeMap;
-use std::hash::{BuildHasher, Hash, Hasher};
+use std::hash::{BuildHasher, Hash};
 
 /// The include that declares `show` and `check`.
 pub(crate) const DEBUG_FILE: &str = "common/debug.glsl";
@@ -129,9 +129,8 @@ fn is_word(c: char) -> bool {
 
 /// A number that is the same in every run.
 fn number(of: impl Hash) -> u32 {
-    let mut hasher = foldhash::quality::FixedState::with_seed(0).build_hasher();
-    of.hash(&mut hasher);
-    (hasher.finish() >> 32) as u32
+    let hash = foldhash::quality::FixedState::with_seed(0).hash_one(of);
+    (hash >> 32) as u32
 }
 
 #[cfg(test)]
