@@ -306,7 +306,7 @@ fn files_that_are_no_sky_are_told_and_impossible_radiance_is_black() {
     };
     save(&path("good.exr"), &patches);
     let good = std::fs::read(path("good.exr")).unwrap();
-    wrong("none.hdr", "cannot read it");
+    wrong("none.hdr", "file not found");
     for (name, bytes) in [("text.hdr", &b"a sky"[..]), ("empty.exr", &[])] {
         std::fs::write(path(name), bytes).unwrap();
         wrong(name, "not a Radiance HDR or OpenEXR picture");
@@ -473,7 +473,7 @@ fn experiments_change_the_picture_and_are_written_with_it() {
             "environment: (rotation: 5),",
             "scene 'white-sky' has no environment",
         ),
-        ("environment: (file: \"none.exr\"),", "cannot read it"),
+        ("environment: (file: \"none.exr\"),", "file not found"),
     ] {
         let message = message(more);
         assert!(

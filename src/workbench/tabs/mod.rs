@@ -68,17 +68,17 @@ impl Entry {
     }
 }
 
-/// The tabs, in order.
+/// The tabs, in the order of the digits that open them.
 pub(crate) const TABS: [Entry; 9] = [
     Entry::of::<surroundings::Surroundings>(),
     Entry::of::<times::Times>(),
     Entry::of::<chart::Chart>(),
-    Entry::of::<runs::Runs>(),
     Entry::of::<nodes::Nodes>(),
     Entry::of::<inspector::Inspector>(),
     Entry::of::<tables::Tables>(),
     Entry::of::<paths::Paths>(),
     Entry::of::<gallery::Gallery>(),
+    Entry::of::<runs::Runs>(),
 ];
 
 /// The state of each tab.
