@@ -1,4 +1,4 @@
-//! Values and conditions of shaders that `shaders/common/debug.glsl` records, in graphs whose answer is known.
+//! Values and conditions of shaders that `shaders/common/debug.glsl` records, in graphs with a known answer.
 
 mod common;
 
@@ -189,7 +189,7 @@ fn values_of_the_clicked_pixel_are_those_of_its_formula() {
         .collect();
     assert_eq!(found, expected);
     assert_eq!(debug.lost, 0);
-    // What the shaders write besides is as without.
+    // The shaders write the same results as without calls.
     let texel = floats(&mut session, "picture", 0)[13 * 32 + 21];
     assert_eq!(texel, [21.0, 13.0, 0.0, 1.0]);
 }
@@ -245,7 +245,7 @@ fn failures_are_counted_and_the_first_place_is_known() {
         output.status.success() && printed.contains(&warning),
         "{printed}"
     );
-    // A pass whose output is unused stays out, though it records.
+    // A pass with unused output stays out, though it records.
     assert!(!printed.contains("left of 20"), "{printed}");
 }
 
@@ -318,7 +318,7 @@ fn code(words: &[u32]) -> Vec<u32> {
     list
 }
 
-/// What a failing check prints.
+/// The output of a failing check.
 fn failure(command: &mut Command) -> String {
     let output = command.output().unwrap();
     assert!(!output.status.success());

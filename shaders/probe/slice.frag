@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Draws a slice of the volume over the picture: a line where it cuts the visible surface, and a tint with a
-// border where it lies in front of it. Exact for boxes; on curved cells the view ray may cross it only once.
+// border where it is in front of it. Exact for boxes; on curved cells the view ray may cross it only once.
 #include "params.glsl"
 #include "common/scene.glsl"
 #include "common/view_ray.glsl"

@@ -304,7 +304,7 @@ impl ShaderCompiler {
             vec![Diagnostic { source, ..found }]
         };
         let (compiled, _) = numbered(&source.file, texts).map_err(misused)?;
-        let compiled = &compiled;
+        let compiled = &*compiled;
         let compiler = COMPILER.as_ref();
         let compiler = compiler.map_err(|e| broken(format!("the compiler did not start: {e}")))?;
         let (mut options, kind) = options(source.stage).map_err(|e| broken(e.to_string()))?;

@@ -1,6 +1,7 @@
 //! Names of shown values and checks (`shaders/common/debug.glsl`). GLSL has no strings: before
 //! compilation each name becomes a number, on the same line.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::hash::{BuildHasher, Hash};
 
@@ -22,6 +23,9 @@ pub(crate) struct DebugName {
     pub line: u32,
 }
 
+/// Files of a shader by their names.
+type Texts = BTreeMap<String, String>;
+
 /// A misuse: file, line, message.
 pub(super) type Misuse = (String, u32, String);
 
@@ -34,13 +38,13 @@ pub(crate) fn debug_names(shader: &str, texts: &BTreeMap<String, String>) -> Vec
 ///
 /// # Errors
 /// The first call without a string for its name.
-pub(super) fn numbered(
+pub(super) fn numbered<'t>(
     shader: &str,
-    texts: &BTreeMap<String, String>,
-) -> Result<(BTreeMap<String, String>, Vec<DebugName>), Misuse> {
+    texts: &'t Texts,
+) -> Result<(Cow<'t, Texts>, Vec<DebugName>), Misuse> {
     let mut names = Vec::new();
     if !texts.contains_key(DEBUG_FILE) {
-        return Ok((texts.clone(), names));
+        return Ok((Cow::Borrowed(texts), names));
     }
     let mut all = BTreeMap::new();
     for (file, text) in texts {
@@ -56,7 +60,7 @@ pub(super) fn numbered(
         // Its variables would change the instructions of a shader that calls nothing.
         all.insert(DEBUG_FILE.to_string(), String::new());
     }
-    Ok((all, names))
+    Ok((Cow::Owned(all), names))
 }
 
 /// Whether a file uses another function of the include, such as `debugIf`.
@@ -119,8 +123,8 @@ fn file_numbered(
 
 /// Whether a character begins a directive: `#` with only blanks before it on its line.
 fn is_directive(before: &str, first: char) -> bool {
-    let line = before.rsplit('\n').next().unwrap_or_default();
-    first == '#' && line.trim().is_empty()
+    let line = || before.rsplit('\n').next().unwrap_or_default();
+    first == '#' && line().trim().is_empty()
 }
 
 fn is_word(c: char) -> bool {
@@ -146,7 +150,8 @@ mod tests {
     fn names_become_numbers_on_their_lines() {
         let main = "#include \"common/debug.glsl\"\n// show(x)\nvoid main() {\n    show( \"a b\", f(\n1));/* check(2\n*/ \
                     check(\"c\", true); shower(x); }\n";
-        let (all, names) = numbered("main.comp", &texts(main)).unwrap();
+        let given = texts(main);
+        let (all, names) = numbered("main.comp", &given).unwrap();
         assert_eq!(
             all["main.comp"],
             main.replace("\"a b\"", &format!("{}u", names[0].id))
@@ -158,10 +163,10 @@ mod tests {
             .collect();
         assert_eq!(found, [("a b", 4, false), ("c", 6, true)]);
         assert_eq!(all[DEBUG_FILE], texts("")[DEBUG_FILE]);
-        let unused = numbered("main.comp", &texts("// show, check")).unwrap();
-        assert_eq!(unused.0[DEBUG_FILE], "");
-        let selects = numbered("main.comp", &texts("debugIf(true);")).unwrap();
-        assert_eq!(selects.0[DEBUG_FILE], texts("")[DEBUG_FILE]);
+        let debug_file =
+            |main: &str| numbered("main.comp", &texts(main)).unwrap().0[DEBUG_FILE].clone();
+        assert_eq!(debug_file("// show, check"), "");
+        assert_eq!(debug_file("debugIf(true);"), texts("")[DEBUG_FILE]);
     }
 
     #[test]

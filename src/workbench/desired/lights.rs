@@ -14,7 +14,7 @@ fn name(kind: &Kind, lights: &[&[Light]]) -> String {
 }
 
 /// A new light of a kind, half way to the camera's target. `lights` are the present lights and the
-/// scene's own, whose names are taken; `diagonal` is the scene's size, m.
+/// scene's own: their names are taken; `diagonal` is the scene's size, m.
 pub(crate) fn new(kind: &Kind, lights: &[&[Light]], camera: &Camera, diagonal: f32) -> Light {
     let view = camera.target - camera.eye;
     let mut light = Light::new(kind, &name(kind, lights));

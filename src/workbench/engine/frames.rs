@@ -211,17 +211,14 @@ impl Run<'_> {
         let small = side.frames_left == 0 || self.last_thumbnails.elapsed() > THUMBNAILS;
         let asked = self.desired.read_back.iter();
         for asked in asked.filter(|asked| asked.side() == number) {
-            if matches!(asked, ReadBack::Thumbnail(_)) {
-                if !small {
-                    continue;
-                }
-                self.last_thumbnails = Instant::now();
-            } else {
-                if !now {
-                    continue;
-                }
-                self.last_read_back = Instant::now();
+            let (due, last) = match asked {
+                ReadBack::Thumbnail(_) => (small, &mut self.last_thumbnails),
+                _ => (now, &mut self.last_read_back),
+            };
+            if !due {
+                continue;
             }
+            *last = Instant::now();
             if let Some(content) = asked.read(session)? {
                 self.out.send(Report::Content(content));
             }

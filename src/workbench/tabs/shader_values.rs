@@ -27,7 +27,7 @@ impl Workbench {
             return false;
         }
         self.desired.read_back.push(ReadBack::Debug);
-        let Some(debug) = self.tabs.tables.values.clone() else {
+        let Some(debug) = self.tabs.tables.values.take() else {
             ui.weak("…");
             return true;
         };
@@ -48,6 +48,7 @@ impl Workbench {
                     false => self.value_rows(ui, "failed checks", &debug.failed),
                 }
             });
+        self.tabs.tables.values = Some(debug);
         true
     }
 
