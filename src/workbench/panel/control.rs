@@ -26,23 +26,34 @@ pub(crate) fn label_width(ui: &Ui) -> f32 {
     (0.34 * ui.available_width()).clamp(72.0, 150.0)
 }
 
-/// A label of that width; the whole text is in the tooltip if it is cut.
+/// A label of that width; the whole text is in the tooltip if it is cut. A layout of its own for
+/// each would cost as much again as the rest of the row.
 pub(crate) fn label(ui: &mut Ui, width: f32, text: RichText) -> Response {
     let size = egui::vec2(width, ui.spacing().interact_size.y);
-    let layout = egui::Layout::left_to_right(egui::Align::Center);
-    let shown = ui.allocate_ui_with_layout(size, layout, |ui| {
-        ui.set_min_width(width);
-        ui.add(egui::Label::new(text).truncate())
-    });
-    shown.inner
+    let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
+    let whole = text.text().to_string();
+    let text = egui::WidgetText::from(text);
+    let wrap = Some(egui::TextWrapMode::Truncate);
+    let galley = text.into_galley(ui, wrap, width, egui::TextStyle::Body);
+    response.widget_info(|| WidgetInfo::labeled(egui::WidgetType::Label, true, &whole));
+    let cut = galley.elided;
+    let at = egui::pos2(rect.left(), rect.center().y - galley.size().y / 2.0);
+    ui.painter().galley(at, galley, ui.visuals().text_color());
+    match cut {
+        true => response.on_hover_text(whole),
+        false => response,
+    }
 }
 
-/// The button at the end of a row that sets the default again. Its place is kept when it is hidden.
+/// The button at the end of a row that sets the default again; none where nothing is to be reset.
 pub(crate) fn reset_button(ui: &mut Ui, visible: bool, name: &str) -> bool {
+    if !visible {
+        return false;
+    }
     let right = egui::Layout::right_to_left(egui::Align::Center);
     ui.with_layout(right, |ui| {
         let icon = RichText::new(egui_phosphor::regular::ARROW_COUNTER_CLOCKWISE);
-        let reset = ui.add_visible(visible, egui::Button::new(icon).frame(false));
+        let reset = ui.add(egui::Button::new(icon).frame(false));
         let name = format!("reset {name}");
         named(&reset, egui::WidgetType::Button, &name);
         reset.on_hover_text("Back to the default").clicked()
@@ -244,8 +255,8 @@ pub(crate) fn spin(ui: &mut Ui, field: DragValue<'_>, name: &str) -> Response {
 
 /// A field for a number as wide as those of the other rows.
 fn wide(ui: &mut Ui, field: DragValue<'_>, name: &str, narrow: bool) -> Response {
-    let size = egui::vec2(NUMBER[usize::from(narrow)], ui.spacing().interact_size.y);
-    labelled(ui.add_sized(size, field), name)
+    ui.spacing_mut().interact_size.x = NUMBER[usize::from(narrow)];
+    labelled(ui.add(field), name)
 }
 
 fn labelled(response: Response, name: &str) -> Response {
