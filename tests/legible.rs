@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{conelab, succeeds};
+use common::{conelab, fails, succeeds};
 use serde_json::Value;
 
 /// Small enough for a software device.
@@ -68,11 +68,12 @@ fn hard_to_read(image: &image::RgbImage, texts: &[Value]) -> Vec<String> {
 #[test]
 fn every_text_of_every_tab_is_legible_in_both_themes() {
     let home = common::home();
-    let views: [&[&str]; 5] = [
+    let views: [&[&str]; 6] = [
         &["Scene", "Profiler", "help"],
         &["Graph", "Chart", "Nodes"],
         &["Inspect", "Motion", "Texture"],
         &["Tables", "Save", "timers"],
+        &["Runs"],
         &[
             "Compare",
             "raster | tessellated",
@@ -99,6 +100,31 @@ fn every_text_of_every_tab_is_legible_in_both_themes() {
         }
     }
     assert!(count > 500, "only {count} texts were measured");
+}
+
+/// A picture that cannot be made is shown as the window shows it, and the command says why.
+#[test]
+fn errors_are_legible_and_fail_the_command() {
+    let home = common::home();
+    for theme in ["dark", "light"] {
+        let (shot, list) = (home.path().join("shot.png"), home.path().join("texts.json"));
+        let mut command = conelab(home.path());
+        command
+            .args(["screenshot", "configs/cones.ron"])
+            .args(SMALL);
+        command.args(["--set", "shadow_filter=1000", "--theme", theme, "--texts"]);
+        let said = fails(command.arg(&list).arg("-o").arg(&shot));
+        assert!(said.contains("'shadow_filter' has no option"), "{said}");
+        let texts: Vec<Value> = serde_json::from_slice(&std::fs::read(&list).unwrap()).unwrap();
+        let of_error = |text: &Value| {
+            text["text"]
+                .to_string()
+                .contains("'shadow_filter' has no option")
+        };
+        assert!(texts.iter().any(of_error), "{texts:#?}");
+        let image = image::open(&shot).unwrap().to_rgb8();
+        assert_eq!(hard_to_read(&image, &texts), Vec::<String>::new());
+    }
 }
 
 /// The measure itself: text of the ground's colour is found, whatever the theme says.

@@ -151,7 +151,10 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         print_times(&shot, args.measure > 0);
     }
     say!("wrote {}", super::shown(&args.output).display());
-    Ok(())
+    match shot.errors.is_empty() {
+        true => Ok(()),
+        false => Err(LabError::Input(shot.errors)),
+    }
 }
 
 fn print_times(shot: &Shot, measured: bool) {
@@ -167,13 +170,19 @@ fn print_times(shot: &Shot, measured: bool) {
         add("from paint to paint", &pace.paint_ms);
         add("from picture to its paint", &pace.delay_ms);
         add("interface, CPU", &pace.cpu_ms);
+        add("  laid out anew", &pace.layout_ms);
     }
     if let Some(edit) = &shot.edit_ms {
         add("save to pixels", edit);
     }
     say_part!("{}", spreads("ms", &rows));
     if let Some(pace) = &shot.pace {
-        say!("{} pictures, {} painted", pace.pictures, pace.painted);
+        say!(
+            "{} pictures, {} painted, {} layouts",
+            pace.pictures,
+            pace.painted,
+            pace.layouts
+        );
         if let Some((before, after)) = pace.memory {
             say!(
                 "{:.1} MiB after a tenth of them, {:.1} MiB after all",

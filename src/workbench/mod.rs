@@ -403,10 +403,16 @@ impl Workbench {
         self.messages.trouble.as_deref()
     }
 
-    /// Whether everything requested is on screen.
+    /// Errors of graphs and shaders that keep a side from what was asked of it.
+    pub fn errors(&self) -> Vec<Diagnostic> {
+        self.sides.iter().flat_map(|s| s.errors.clone()).collect()
+    }
+
+    /// Whether everything requested is on screen, or the reason why it cannot be.
     pub fn settled(&self) -> bool {
         let shown = |i: usize| {
             self.desired.sides[i].is_none()
+                || !self.sides[i].errors.is_empty() && !self.engine.works()
                 || self.sides[i].picture.as_ref().is_some_and(|p| {
                     let known = p.request >= self.sent.number && self.sides[i].info.is_some();
                     !p.preview && known

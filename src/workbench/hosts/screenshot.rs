@@ -2,14 +2,17 @@
 //! interface as the window's, for pictures in documents and for measuring what the interface itself
 //! costs.
 
+use super::frame::Frame;
 use super::texts::{Text, texts};
+use crate::diagnostics::Diagnostic;
 use crate::files::FileError;
 use crate::lab::LabError;
 use crate::results::stats::{Spread, spread};
-use crate::vulkan::{Gpu, GpuOptions, Painter, Pixels};
-use crate::workbench::{NewPixels, Options, PICTURES, Workbench, theme};
+use crate::vulkan::{Gpu, GpuOptions, Painter};
+use crate::workbench::{Options, PICTURES, Workbench, theme};
 use crossbeam_channel::{Receiver, unbounded};
 use egui::accesskit::{Node, NodeId};
+use egui::epaint::textures::TexturesDelta;
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, TextureId, Vec2};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -77,6 +80,10 @@ pub struct Kept {
     pub delay_ms: Spread,
     /// CPU time of a frame of the interface, ms.
     pub cpu_ms: Spread,
+    /// The same of those that were laid out anew, ms; how many are in `layouts`.
+    pub layout_ms: Spread,
+    /// Frames that were laid out anew. The others show new pictures in the last layout.
+    pub layouts: usize,
     /// Main memory that the process held after a tenth of the pictures, and after all; where the
     /// system says.
     pub memory: Option<(u64, u64)>,
@@ -100,6 +107,8 @@ pub struct Shot {
     pub pace: Option<Kept>,
     /// The texts of the picture.
     pub texts: Vec<Text>,
+    /// Errors that the picture shows.
+    pub errors: Vec<Diagnostic>,
 }
 
 struct Host {
@@ -107,6 +116,7 @@ struct Host {
     context: egui::Context,
     painter: Painter,
     textures: Vec<TextureId>,
+    last: Frame,
     nodes: HashMap<NodeId, Node>,
     script: Script,
     start: Instant,
@@ -141,6 +151,7 @@ pub fn take(options: Options, gpu: &GpuOptions, script: Script) -> Result<Shot, 
         context,
         painter,
         textures,
+        last: Frame::default(),
         nodes: HashMap::new(),
         script,
         start,
@@ -205,6 +216,7 @@ impl Host {
             copy_ms: spread(copies),
             pace,
             texts: std::mem::take(&mut self.texts),
+            errors: self.workbench.errors(),
         })
     }
 
@@ -216,8 +228,8 @@ impl Host {
                 "there is no picture to keep pace with".into(),
             ));
         };
-        let (mut engine, mut paints, mut delays, mut cpu) =
-            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut engine, mut paints, mut delays) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut cpu, mut layouts) = (Vec::new(), Vec::new());
         let (mut seen, mut painted, mut early) = (stamp(self), Instant::now(), None);
         let (mut until, mut next) = (painted + self.script.patience, painted);
         while seen.is_some_and(|(frame, _)| frame - first < pace.pictures as u64) {
@@ -230,7 +242,7 @@ impl Host {
             }
             // One frame answers all that has been said meanwhile.
             while self.woken.try_recv().is_ok() {}
-            let ms = self.frame(Vec::new())?;
+            let (ms, laid_out) = self.repaint()?;
             let now = Instant::now();
             let (new, last) = (stamp(self), seen);
             let came = new.zip(last).filter(|(new, last)| new.0 > last.0);
@@ -243,6 +255,7 @@ impl Host {
             if came.is_some() || pace.every.is_some() {
                 paints.push((now - painted).as_secs_f64() * 1e3);
                 cpu.push(ms);
+                layouts.extend(laid_out.then_some(ms));
                 painted = now;
             }
             if early.is_none()
@@ -263,6 +276,8 @@ impl Host {
             paint_ms: spread(paints),
             delay_ms: spread(delays),
             cpu_ms: spread(cpu),
+            layouts: layouts.len(),
+            layout_ms: spread(layouts),
             memory: early.zip(resident_bytes()),
         })
     }
@@ -361,6 +376,22 @@ impl Host {
         Ok(())
     }
 
+    /// Paints what has come, as the window does; CPU time, ms, and whether it was laid out anew.
+    fn repaint(&mut self) -> Result<(f64, bool), LabError> {
+        self.workbench.poll_events();
+        let begun = Instant::now();
+        if self.last.serves(self.workbench.pixels()).is_none() {
+            return Ok((self.frame(Vec::new())?, true));
+        }
+        let (painter, workbench) = (&mut self.painter, &mut self.workbench);
+        let (size, textures) = (self.script.size, TexturesDelta::default());
+        self.last.paint(painter, size, textures, workbench)?;
+        Ok((
+            begun.elapsed().as_secs_f64() * 1e3 - self.painter.waited_ms,
+            false,
+        ))
+    }
+
     /// One frame of the interface; its CPU time, ms.
     fn frame(&mut self, events: Vec<Event>) -> Result<f64, LabError> {
         let (width, height) = self.script.size;
@@ -390,25 +421,11 @@ impl Host {
         if self.script.texts {
             self.texts = texts(&output.shapes, scale);
         }
-        let primitives = self
-            .context
-            .tessellate(output.shapes, output.pixels_per_point);
-        let pixels: Vec<Pixels<'_>> = workbench
-            .pixels()
-            .iter()
-            .filter_map(NewPixels::source)
-            .collect();
-        let size = self.script.size;
-        if self.painter.paint(
-            size,
-            output.pixels_per_point,
-            output.textures_delta,
-            &primitives,
-            &pixels,
-        )? {
-            drop(pixels);
-            workbench.painted();
-        }
+        self.last
+            .lay_out(&self.context, output.shapes, output.pixels_per_point);
+        let (painter, size) = (&mut self.painter, self.script.size);
+        self.last
+            .paint(painter, size, output.textures_delta, workbench)?;
         // Waiting for the GPU is no cost of the interface.
         Ok(begun.elapsed().as_secs_f64() * 1e3 - self.painter.waited_ms)
     }

@@ -1,9 +1,11 @@
 //! The window: winit's events in, painted frames out. It has a device of its own, see
 //! [`crate::workbench::engine`].
 
+use super::frame::Frame;
 use crate::lab::LabError;
-use crate::vulkan::{Gpu, GpuOptions, Painter, Pixels, Surface, VulkanError};
-use crate::workbench::{NewPixels, Options, PICTURES, Workbench, theme};
+use crate::vulkan::{Gpu, GpuOptions, Painter, Surface, VulkanError};
+use crate::workbench::{Options, PICTURES, Workbench, theme};
+use egui::epaint::textures::TexturesDelta;
 use egui::{TextureId, ViewportId};
 use raw_window_handle::HasDisplayHandle;
 use std::sync::Arc;
@@ -30,6 +32,7 @@ struct Open {
     state: egui_winit::State,
     painter: Painter,
     textures: Vec<TextureId>,
+    frame: Frame,
     gpu: Arc<Gpu>,
     window: Arc<Window>,
 }
@@ -133,6 +136,7 @@ impl App {
             state,
             painter,
             textures,
+            frame: Frame::default(),
             gpu,
             window,
         })
@@ -146,6 +150,15 @@ impl App {
             self.context.enable_accesskit();
         }
         let soon = workbench.poll_events();
+        let size = open.window.inner_size();
+        if let Some(left) = open.frame.serves(workbench.pixels()) {
+            let (painter, size) = (&mut open.painter, (size.width, size.height));
+            open.frame
+                .paint(painter, size, TexturesDelta::default(), workbench)?;
+            let due = Instant::now() + left;
+            self.repaint_at = Some(self.repaint_at.map_or(due, |at| at.min(due)));
+            return Ok(());
+        }
         let input = open.state.take_egui_input(&open.window);
         let textures = &open.textures;
         let mut output = self.context.run_ui(input, |ui| workbench.ui(ui, textures));
@@ -167,27 +180,12 @@ impl App {
                 _ => {}
             }
         }
-        let primitives = self
-            .context
-            .tessellate(output.shapes, output.pixels_per_point);
-        let size = open.window.inner_size();
-        let pixels: Vec<Pixels<'_>> = workbench
-            .pixels()
-            .iter()
-            .filter_map(NewPixels::source)
-            .collect();
-        let deltas = output.textures_delta;
-        let painted = open.painter.paint(
-            (size.width, size.height),
-            output.pixels_per_point,
-            deltas,
-            &primitives,
-            &pixels,
-        )?;
-        drop(pixels);
-        if painted {
-            workbench.painted();
-        }
+        let shapes = std::mem::take(&mut output.shapes);
+        open.frame
+            .lay_out(&self.context, shapes, output.pixels_per_point);
+        let (painter, size) = (&mut open.painter, (size.width, size.height));
+        open.frame
+            .paint(painter, size, output.textures_delta, workbench)?;
         let more = more.then_some(Duration::from_millis(110));
         let delays = [viewport.map(|v| v.repaint_delay), soon, more];
         let delay = delays.into_iter().flatten().min().unwrap_or(Duration::MAX);
@@ -268,6 +266,7 @@ impl ApplicationHandler<WindowWake> for App {
         let Some(open) = &mut self.open else { return };
         let response = open.state.on_window_event(&open.window, &event);
         if response.repaint {
+            open.frame.outdate();
             open.window.request_redraw();
         }
         match event {
@@ -280,6 +279,7 @@ impl ApplicationHandler<WindowWake> for App {
             }
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
                 open.painter.resized();
+                open.frame.outdate();
                 open.window.request_redraw();
             }
             WindowEvent::DroppedFile(path) => {
@@ -299,10 +299,11 @@ impl ApplicationHandler<WindowWake> for App {
     }
 
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
-        let Some(open) = &self.open else { return };
+        let Some(open) = &mut self.open else { return };
         match self.repaint_at {
             Some(at) if at <= Instant::now() => {
                 self.repaint_at = None;
+                open.frame.outdate();
                 open.window.request_redraw();
                 event_loop.set_control_flow(ControlFlow::Wait);
             }
