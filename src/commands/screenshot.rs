@@ -62,7 +62,7 @@ pub struct ScreenshotArgs {
     /// Write what happens to this file, one JSON object a line.
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
-    /// Seconds to wait for the picture after each click.
+    /// Seconds to wait for the picture after each click, and for its convergence at the end.
     #[arg(long, default_value_t = 120)]
     patience: u64,
     /// Output file, .png or .jpg.
@@ -149,6 +149,12 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
     }
     if args.measure > 0 || shot.pace.is_some() || shot.edit_ms.is_some() {
         print_times(&shot, args.measure > 0);
+    }
+    if shot.frames_left > 0 {
+        warn!(
+            "warning: the picture has not converged, {} frames are missing; --patience gives it more time",
+            shot.frames_left
+        );
     }
     say!("wrote {}", super::shown(&args.output).display());
     match shot.errors.is_empty() {

@@ -426,6 +426,24 @@ impl Workbench {
             && !self.effects.awaits()
     }
 
+    /// Frames until all pictures have converged. None while frames go on without end.
+    pub fn frames_left(&self) -> u32 {
+        let shown = [0, 1].map(|i| {
+            self.desired.sides[i]
+                .as_ref()
+                .and(self.sides[i].picture.as_ref())
+        });
+        match self.desired.continuous || self.desired.clock.playing {
+            true => 0,
+            false => shown
+                .into_iter()
+                .flatten()
+                .map(|p| p.left)
+                .max()
+                .unwrap_or(0),
+        }
+    }
+
     /// The interface of one frame.
     pub fn ui(&mut self, ui: &mut Ui, textures: &[TextureId]) {
         layout::release_focus(ui);

@@ -109,6 +109,8 @@ pub struct Shot {
     pub texts: Vec<Text>,
     /// Errors that the picture shows.
     pub errors: Vec<Diagnostic>,
+    /// Frames that were missing to a converged picture when patience ended.
+    pub frames_left: u32,
 }
 
 struct Host {
@@ -187,6 +189,13 @@ impl Host {
             }
             self.settle()?;
         }
+        let until = Instant::now() + self.script.patience;
+        while self.workbench.frames_left() > 0 && Instant::now() < until {
+            let _ = self.woken.recv_timeout(Duration::from_millis(100));
+            self.repaint()?;
+        }
+        let frames_left = self.workbench.frames_left();
+        self.settle()?;
         if self.script.measure > 0 || self.script.pace.is_some() {
             // A window without a screen reader does not describe its widgets either.
             self.context.disable_accesskit();
@@ -217,6 +226,7 @@ impl Host {
             pace,
             texts: std::mem::take(&mut self.texts),
             errors: self.workbench.errors(),
+            frames_left,
         })
     }
 

@@ -38,25 +38,21 @@ impl Workbench {
             }
         });
         ui.weak(plan.kind.about());
-        let mut error = None;
-        if plan.kind == Kind::Sweep {
-            error = self.sweep_rows(ui);
-        }
+        let ready = plan.kind != Kind::Sweep || self.sweep_rows(ui);
         numbers(ui, &mut self.tabs.runs.plan);
-        if let Some(why) = &error {
-            ui.colored_label(ui.visuals().error_fg_color, why);
-        }
         let idle = self.tabs.runs.running.is_none();
-        let start = ui.add_enabled(error.is_none() && idle, Button::new("Start"));
+        let start = ui.add_enabled(ready && idle, Button::new("Start"));
         let about = "Measures the experiment as it is now, in the background";
         if start.on_hover_text(about).clicked() {
             self.start_run();
         }
     }
 
-    /// Parameter and values of a sweep. Returns why it cannot start.
-    fn sweep_rows(&mut self, ui: &mut Ui) -> Option<String> {
-        let info = self.sides[self.panel.side].info.clone()?;
+    /// Parameter and values of a sweep. Returns whether it can start.
+    fn sweep_rows(&mut self, ui: &mut Ui) -> bool {
+        let Some(info) = self.sides[self.panel.side].info.clone() else {
+            return false;
+        };
         let params = &info.graph.params;
         let mut chosen = None;
         ui.horizontal(|ui| {
@@ -81,15 +77,19 @@ impl Workbench {
         }
         let runs = &mut self.tabs.runs;
         let Some(param) = params.param(&runs.plan.param) else {
-            return Some("Choose a parameter, or right click one in the panel".into());
+            ui.weak("Choose a parameter here, or right click one in the panel");
+            return false;
         };
         values_row(ui, param, &mut runs.values);
         match read_values(param, &runs.values) {
             Ok(values) => {
                 runs.plan.values = values;
-                None
+                true
             }
-            Err(why) => Some(format!("values: {why}")),
+            Err(why) => {
+                ui.colored_label(ui.visuals().error_fg_color, format!("values: {why}"));
+                false
+            }
         }
     }
 }

@@ -106,6 +106,9 @@ impl Chart {
         }
         painter.add(Shape::Mesh(self.mesh.clone()));
         let (text, weak) = (ui.visuals().text_color(), ui.visuals().weak_text_color());
+        let line = ui
+            .text_style_height(&TextStyle::Small)
+            .max(1.35 * font.size);
         let (median, p95) = history.level();
         if !history.frames.is_empty() {
             let labels = [
@@ -116,7 +119,7 @@ impl Chart {
                 let part = (ms / look.top.max(1e-9)).min(1.0);
                 let y = bars.bottom() - bars.height() * part as f32;
                 painter.hline(bars.x_range(), y, (1.0, weak));
-                let y = y.clamp(rect.top() + font.size, rect.bottom() - font.size);
+                let y = y.clamp(rect.top() + line, rect.bottom() - line);
                 let at = Pos2::new(bars.right() + 3.0, y);
                 painter.text(
                     at,
@@ -127,14 +130,12 @@ impl Chart {
                 );
             }
         }
+        let name = ["A", "B"][look.side.min(1)].to_string();
+        let name = painter.layout_no_wrap(name, font, text);
         let at = rect.left_top() + Vec2::splat(3.0);
-        painter.text(
-            at,
-            Align2::LEFT_TOP,
-            ["A", "B"][look.side.min(1)],
-            font,
-            text,
-        );
+        let ground = Rect::from_min_size(at, name.size()).expand(1.0);
+        painter.rect_filled(ground, 2.0, ui.visuals().extreme_bg_color);
+        painter.galley(at, name, text);
         if let Some(index) = look.held.and_then(|n| n.checked_sub(history.first)) {
             let (x, step) = place(bars, history.frames.len(), index as usize);
             let column = Rect::from_x_y_ranges(x..=x + step, bars.y_range());

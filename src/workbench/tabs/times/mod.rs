@@ -315,7 +315,11 @@ impl Workbench {
         ui.horizontal(|ui| match &times.held {
             None => {
                 let of = if times.table.both { "A and B, " } else { "" };
-                ui.label(format!("{of}last {} frames, ms", times.table.frames))
+                let last = match times.table.frames {
+                    1 => "last frame".to_string(),
+                    frames => format!("last {frames} frames"),
+                };
+                ui.label(format!("{of}{last}, ms"))
                     .on_hover_text("Click a frame in the graph to show its times");
             }
             Some(held) => {
