@@ -90,9 +90,9 @@ impl State {
         (now != *there).then(|| format!("reference ({there} / {now} samples)"))
     }
 
-    /// Whether the error worker has not answered yet.
+    /// Whether an error or a reference is on its way.
     pub fn awaits(&self) -> bool {
-        self.sides.iter().any(Side::is_asked)
+        self.gather.is_some() || self.sides.iter().any(Side::is_asked)
     }
 
     /// Where a side is; nothing as long as its error or time is not known.
