@@ -969,14 +969,6 @@ fn texts_of_shaders() {
     shaders/light.glsl:3: error: 'levle' : no such field in structure 'params'
         | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
         = help: did you mean 'level'?
-    shaders/light.glsl:3: error: '*' :  wrong operand types: no operation '*' exists that takes a left-hand operand of type 'layout( column_major std140) uniform block{...}' and a right operand of type ' temp float' (or there is no acceptable conversion)
-        | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
-    shaders/light.glsl:3: error: 'constructor' : can't convert
-        | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
-    shaders/light.glsl:3: error: ' temp 4-component vector of float' : cannot construct with these arguments
-        | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
-    shaders/light.glsl:3: error: 'return' : cannot convert return value to function return type
-        | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
     ");
     assert_snapshot!(shader("light.glsl", "vec4 light", "vec3 light"), @r"
     shaders/light.glsl:3: error: 'return' : cannot convert return value to function return type
@@ -987,10 +979,6 @@ fn texts_of_shaders() {
     assert_snapshot!(shader("fill.comp", "light.glsl", "lihgt.glsl"), @r#"
     shaders/fill.comp:3: error: '#include' : no such include; did you mean 'light.glsl'? for header name: lihgt.glsl
         | #include "lihgt.glsl"
-    shaders/fill.comp:6: error: 'light' : no matching overloaded function found
-        | void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), light()); }
-    shaders/fill.comp:6: error: 'imageStore' : no matching overloaded function found
-        | void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), light()); }
     "#);
     assert_snapshot!(shader("fill.comp", "#extension GL_GOOGLE_include_directive : require\n", ""), @"");
     assert_snapshot!(shader("prepare.comp", "#version 460\n", ""), @r#"
@@ -1000,24 +988,6 @@ fn texts_of_shaders() {
     assert_snapshot!(shader("light.glsl", "#include", "#include \"light.glsl\"\n#include"), @r#"
     shaders/light.glsl:1: error: '#include' : too many includes (4096 at most, 32 of them nested): light.glsl > light.glsl > light.glsl > light.glsl > ... > light.glsl > light.glsl > light.glsl for header name: light.glsl
         | #include "light.glsl"
-    shaders/light.glsl:4: error: 'params' : undeclared identifier
-        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/light.glsl:4: error: 'level' : vector swizzle too long
-        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/light.glsl:4: error: 'level' : unknown swizzle selection
-        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/light.glsl:4: error: 'bright' : vector swizzle too long
-        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/light.glsl:4: error: 'bright' : unknown swizzle selection
-        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/light.glsl:4: error: 'bright' : vector swizzle selection out of range
-        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/light.glsl:4: error: '' : boolean expression expected
-        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/light.glsl:3: error: 'light' : function already has a body
-        | vec4 light() {
-    shaders/light.glsl:4: error: 'return' : void function cannot return a value
-        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
     "#);
     assert_snapshot!(shader("prepare.comp", "void main()", "void other()"), @r"
     shaders/prepare.comp: error: compilation error:
@@ -1030,12 +1000,55 @@ fn texts_of_shaders() {
             .edit("shaders/light.glsl", "return vec4(", "return vec5(")
             .findings(),
         @r"
-        shaders/light.glsl:3: error: 'vec5' : no matching overloaded function found
-            | return vec5(params.level * (params.bright ? 2.0 : 1.0));
-        shaders/light.glsl:3: error: 'return' : cannot convert return value to function return type
-            | return vec5(params.level * (params.bright ? 2.0 : 1.0));
-        "
+    shaders/light.glsl:3: error: 'vec5' : no matching overloaded function found
+        | return vec5(params.level * (params.bright ? 2.0 : 1.0));
+        = help: did you mean 'vec4'?
+    "
     );
+}
+
+#[test]
+fn an_unknown_name_in_a_shader_is_one_error_with_the_name_that_is_meant() {
+    const LEVEL: &str = "params.level * (params.bright ? 2.0 : 1.0)";
+    let light = |new: &str| shader("light.glsl", LEVEL, new);
+    // A function, of a file and of GLSL; the vector has too few values then.
+    assert_snapshot!(shader("fill.comp", "light()", "lihgt()"), @r"
+    shaders/fill.comp:6: error: 'lihgt' : no matching overloaded function found
+        | void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), lihgt()); }
+        = help: did you mean 'light'?
+    ");
+    assert_snapshot!(light("vec2(0.0), clmap(params.level, 0.0, 1.0)"), @r"
+    shaders/light.glsl:3: error: 'clmap' : no matching overloaded function found
+        | return vec4(vec2(0.0), clmap(params.level, 0.0, 1.0));
+        = help: did you mean 'clamp'?
+    ");
+    // A variable, a parameter without its block, and a built-in one.
+    assert_snapshot!(shader("fill.comp", "imageStore(grid, ivec3(gl_GlobalInvocationID)", "imageStore(gird, ivec3(gl_GlobalInvocatoinID)"), @r"
+    shaders/fill.comp:6: error: 'gird' : undeclared identifier
+        | void main() { imageStore(gird, ivec3(gl_GlobalInvocatoinID), light()); }
+        = help: did you mean 'grid'?
+    shaders/fill.comp:6: error: 'gl_GlobalInvocatoinID' : undeclared identifier
+        | void main() { imageStore(gird, ivec3(gl_GlobalInvocatoinID), light()); }
+        = help: did you mean 'gl_GlobalInvocationID'?
+    ");
+    assert_snapshot!(light("levle"), @r"
+    shaders/light.glsl:3: error: 'levle' : undeclared identifier
+        | return vec4(levle);
+        = help: did you mean 'params.level'?
+    ");
+    // The statement spans lines, and a later one uses the unknown variable.
+    assert_snapshot!(shader("light.glsl", "    return", "    float a = max(\n        brigth,\n        vec2(1));\n    vec3 b = brigth.xyz;\n    return"), @r"
+    shaders/light.glsl:4: error: 'brigth' : undeclared identifier
+        | brigth,
+        = help: did you mean 'params.bright'?
+    ");
+    // A second mistake stays.
+    assert_snapshot!(shader("light.glsl", "    return", "    vec3 a = nonesuch(1.0) + vec2(1);\n    vec3 b = vec2(2);\n    return"), @r"
+    shaders/light.glsl:3: error: 'nonesuch' : no matching overloaded function found
+        | vec3 a = nonesuch(1.0) + vec2(1);
+    shaders/light.glsl:4: error: '=' :  cannot convert from ' const 2-component vector of float' to ' temp highp 3-component vector of float'
+        | vec3 b = vec2(2);
+    ");
 }
 
 #[test]
@@ -1448,10 +1461,10 @@ fn several_mistakes_are_told_at_once() {
     assert_snapshot!(shaders.findings(), @r"
     shaders/fill.comp:6: error: 'ligth' : no matching overloaded function found
         | void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), ligth()); }
-    shaders/fill.comp:6: error: 'imageStore' : no matching overloaded function found
-        | void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), ligth()); }
+        = help: did you mean 'light'?
     shaders/paint.frag:7: error: 'flaot' : no matching overloaded function found
         | color = texelFetch(grid, ivec3(0), 0) * flaot(texelFetch(count, ivec2(0), 0).r) + texelFetch(last, ivec2(0), 0);
+        = help: did you mean 'float'?
     shaders/reduce.comp:3: error: '' :  syntax error, unexpected IDENTIFIER, expecting LEFT_BRACE or COMMA or SEMICOLON
         | uniform sampler4D src;
     ");

@@ -4,6 +4,7 @@
 use super::access::decorated;
 use super::debug::{DEBUG_FILE, numbered};
 use super::macros::{Grown, check_growth, check_version};
+use super::messages::{Message, messages};
 use super::reflect::{Interface, MAX_BINDINGS, reflect};
 use crate::diagnostics::excerpt::excerpt;
 use crate::diagnostics::panics::caught;
@@ -407,38 +408,21 @@ impl ShaderCompiler {
         texts: &BTreeMap<String, String>,
         main: &str,
     ) -> Vec<Diagnostic> {
-        let mut list: Vec<Diagnostic> = Vec::new();
-        for line in text.lines() {
-            let parts: Vec<&str> = line.splitn(4, ':').collect();
-            let &[file, number, level, message] = &parts[..] else {
-                continue;
-            };
-            let (level, message) = (level.trim(), message.trim());
-            let Some(number) = number.parse().ok().filter(|_| texts.contains_key(file)) else {
-                continue;
-            };
-            let (place, source) = self.place(file, number, texts);
+        let diagnostic = |found: Message| {
+            let (place, source) = self.place(&found.file, found.line, texts);
             // Some messages print a whole type.
-            let told = excerpt(&shortened(message), 400);
-            let mut found = match level {
-                "error" => Diagnostic::error(place, told),
-                _ => Diagnostic::warning(place, told),
+            let message = excerpt(&shortened(&found.text), 400);
+            let diagnostic = match found.is_error {
+                true => Diagnostic::error(place, message),
+                false => Diagnostic::warning(place, message),
             };
-            found.source = source;
-            if let Some(name) = missing_member(message) {
-                let line = found.source.clone().unwrap_or_default();
-                let members = texts.get("params.glsl");
-                let members = members.filter(|_| line.contains(&format!("params.{name}")));
-                let members = members.into_iter().flat_map(|text| params_members(text));
-                found = found.nearest(name, members);
+            Diagnostic {
+                source,
+                ..diagnostic.help(found.help)
             }
-            // The compiler repeats every include up to the first error.
-            let again =
-                message.contains(TOO_MANY) && list.iter().any(|f| f.message.contains(TOO_MANY));
-            if !list.contains(&found) && !again {
-                list.push(found);
-            }
-        }
+        };
+        let found = messages(text, texts).into_iter().map(diagnostic);
+        let mut list: Vec<Diagnostic> = found.collect();
         if list.is_empty() {
             let place = Place {
                 file: self.folder.join(main),
@@ -465,22 +449,6 @@ fn text_of(path: &Path) -> Result<Arc<Text>, Vec<Diagnostic>> {
     } else {
         Ok(Text::new(text))
     }
-}
-
-/// The missing member in the compiler's message about a structure.
-fn missing_member(message: &str) -> Option<&str> {
-    let (name, rest) = message.strip_prefix('\'')?.split_once('\'')?;
-    rest.contains("no such field").then_some(name)
-}
-
-/// Member names of the parameter block in the generated include.
-fn params_members(text: &str) -> impl Iterator<Item = &str> {
-    let block = text
-        .lines()
-        .skip_while(|l| !l.contains("uniform Params"))
-        .skip(1)
-        .take_while(|l| !l.starts_with('}'));
-    block.filter_map(|line| line.trim().strip_suffix(';')?.split_whitespace().nth(1))
 }
 
 /// The message without the members of printed types.

@@ -110,13 +110,15 @@ pub(super) fn check_version(text: &str) -> Result<(), (u32, String)> {
 }
 
 /// A line with its continuations.
-struct Line<'t> {
-    number: u32,
-    tokens: Vec<&'t str>,
+pub(super) struct Line<'t> {
+    /// Number of its first line, from 1.
+    pub number: u32,
+    pub tokens: Vec<&'t str>,
 }
 
 impl<'t> Line<'t> {
-    fn directive(&self) -> Option<&'t str> {
+    /// The name of a preprocessor directive.
+    pub fn directive(&self) -> Option<&'t str> {
         (self.tokens.first() == Some(&"#")).then(|| self.tokens.get(1).copied().unwrap_or_default())
     }
 
@@ -134,7 +136,7 @@ impl<'t> Line<'t> {
 }
 
 /// Tokens by line, without comments.
-fn lines(text: &str) -> Vec<Line<'_>> {
+pub(super) fn lines(text: &str) -> Vec<Line<'_>> {
     let (bytes, mut at, mut number) = (text.as_bytes(), 0, 1);
     let (mut all, mut line) = (
         Vec::new(),

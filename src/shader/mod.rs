@@ -5,6 +5,8 @@ mod compile;
 mod debug;
 pub(crate) mod layout;
 mod macros;
+mod messages;
+mod names;
 mod reflect;
 mod sizes;
 mod spirv;
