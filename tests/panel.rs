@@ -275,7 +275,7 @@ fn a_sequence_says_how_far_it_is_and_can_be_stopped() {
 
 #[test]
 fn a_place_in_a_message_opens_the_editor() {
-    let editor = [("CONELAB_EDITOR", "cp {file} opened-{line}")];
+    let editor = [("CONELAB_EDITOR", "./editor {file} opened-{line}")];
     let mut driver = WindowDriver::open_with(CONES, &["--size", "160x120"], &editor);
     let first = driver.first_picture();
     let place = driver.place();
@@ -296,6 +296,18 @@ fn a_place_in_a_message_opens_the_editor() {
     driver.texts_until("the message", |texts| texts.iter().any(|t| label(&t)));
     assert_eq!(driver.place(), place, "the picture stays where it is");
     let text = driver.texts().iter().find(label).unwrap().clone();
+    assert!(text.starts_with("shaders/display/display.comp:"), "{text}");
+    // A program that cannot be started is a message, not a note at the window's edge.
+    let mark = driver.now();
+    let rect = driver.find("", &text);
+    driver.click_at((rect[0] + 40.0, rect[1] + 6.0));
+    driver.event(mark, "editor");
+    let warned = |t: &String| t.starts_with("cannot start the editor './editor'");
+    driver.texts_until("the warning", |texts| texts.iter().any(warned));
+    driver.click("Button", "dismiss");
+    driver.texts_until("no warning", |texts| !texts.iter().any(warned));
+    let script = driver.home.path().join("editor");
+    std::os::unix::fs::symlink("/bin/cp", script).unwrap();
     let mark = driver.now();
     let rect = driver.find("", &text);
     driver.click_at((rect[0] + 40.0, rect[1] + 6.0));

@@ -4,11 +4,11 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Variables that may name the editor, the first that is set counts.
+/// Variables that may name the editor. The first one that is set is used.
 const VARIABLES: [&str; 3] = ["CONELAB_EDITOR", "VISUAL", "EDITOR"];
 
-/// Opens a file. Returns a message.
-pub fn open(file: &Path, line: u32) -> String {
+/// Opens a file. Returns a message, also on failure.
+pub fn open(file: &Path, line: u32) -> Result<String, String> {
     let named = VARIABLES
         .iter()
         .find_map(|v| Some((*v, std::env::var(v).ok().filter(|t| !t.trim().is_empty())?)));
@@ -17,24 +17,27 @@ pub fn open(file: &Path, line: u32) -> String {
     };
     let words = command(&text, file, line);
     match start(&words) {
-        Ok(()) => format!("{} opens {}:{line}", words[0], file.display()),
-        Err(e) => format!("cannot start '{}' ({e}): {variable} names it", words[0]),
+        Ok(()) => Ok(format!("opened {}:{line} in {}", file.display(), words[0])),
+        Err(e) => Err(format!(
+            "cannot start the editor '{}' ({e}): set {variable} to another command",
+            words[0]
+        )),
     }
 }
 
-/// Opens a file with the system's program for it. Returns a message.
-pub fn show(file: &Path) -> String {
+/// Opens a file with the system's program for it. Returns a message, also on failure.
+pub fn show(file: &Path) -> Result<String, String> {
     let name = file.display();
     match open::that_detached(file) {
-        Ok(()) => format!("opened {name}"),
-        Err(e) => format!(
+        Ok(()) => Ok(format!("opened {name}")),
+        Err(e) => Err(format!(
             "cannot open {name} ({e}): for sources, set CONELAB_EDITOR, for example to `code -g {{file}}:{{line}}`"
-        ),
+        )),
     }
 }
 
-/// The words of a command, with the file and the line in their places; the file at the end where it
-/// has none. No shell reads them.
+/// The words of a command with the file and the line in place of `{file}` and `{line}`. The file
+/// is the last word if the command has no `{file}`. Words do not pass through a shell.
 fn command(text: &str, file: &Path, line: u32) -> Vec<String> {
     let file = file.to_string_lossy();
     let mut words: Vec<String> = text.split_whitespace().map(String::from).collect();

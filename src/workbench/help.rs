@@ -324,7 +324,7 @@ impl Workbench {
                     continue;
                 }
                 if ui.link(about).on_hover_text(page).clicked() {
-                    self.messages.status = editor::show(&file);
+                    self.opened(editor::show(&file));
                 }
             }
             if !docs.is_dir() {

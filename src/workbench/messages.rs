@@ -1,10 +1,10 @@
-//! Errors with the place and the source line, over the picture's foot; they go when they are
-//! mended.
+//! Errors with place and source line over the lower edge of the picture, until they are mended.
 
 use crate::diagnostics::{Diagnostic, Place, Severity};
 use crate::workbench::engine::Order;
 use crate::workbench::{Side, Workbench, editor};
 use egui::{Align2, Rect, RichText, Ui};
+use std::path::Path;
 
 /// The end of a message after which the device has to be restarted.
 const RESTART: &str = "Restart device";
@@ -49,7 +49,8 @@ impl Workbench {
 
     fn message_rows(&mut self, ui: &mut Ui) {
         let sides = self.sides.iter().zip(["A", "B"]);
-        let open = sides.filter_map(|(side, name)| side_rows(ui, side, name));
+        let root = &self.setup.home.root;
+        let open = sides.filter_map(|(side, name)| side_rows(ui, side, name, root));
         if let Some(place) = open.last() {
             self.open_editor(&place);
         }
@@ -77,9 +78,18 @@ impl Workbench {
         if !file.is_absolute() && !file.exists() {
             file = self.setup.home.root.join(file);
         }
-        let text = editor::open(&file, place.line);
+        let opened = editor::open(&file, place.line);
+        let (Ok(text) | Err(text)) = &opened;
         self.event("editor", serde_json::json!({ "text": text }));
-        self.messages.status = text;
+        self.opened(opened);
+    }
+
+    /// Shows the message of an opened file, or why it was not opened.
+    pub(super) fn opened(&mut self, opened: Result<String, String>) {
+        match opened {
+            Ok(text) => self.messages.status = text,
+            Err(text) => self.messages.trouble = Some(text),
+        }
     }
 
     fn scene_row(&mut self, ui: &mut Ui) {
@@ -98,8 +108,8 @@ impl Workbench {
     }
 }
 
-/// The messages of a side. Returns the place that was clicked on.
-fn side_rows(ui: &mut Ui, side: &Side, name: &str) -> Option<Place> {
+/// The messages of a side, with paths relative to `root`. Returns the place that was clicked on.
+fn side_rows(ui: &mut Ui, side: &Side, name: &str, root: &Path) -> Option<Place> {
     if !side.errors.is_empty() {
         let count = side.errors.len();
         let text = match count {
@@ -117,7 +127,7 @@ fn side_rows(ui: &mut Ui, side: &Side, name: &str) -> Option<Place> {
     }
     let mut open = None;
     for error in &side.errors {
-        if diagnostic(ui, error) {
+        if diagnostic(ui, error, root) {
             open = Some(error.place.clone());
         }
     }
@@ -128,9 +138,10 @@ fn side_rows(ui: &mut Ui, side: &Side, name: &str) -> Option<Place> {
 }
 
 /// Shows an error; whether its place was clicked on.
-fn diagnostic(ui: &mut Ui, d: &Diagnostic) -> bool {
+fn diagnostic(ui: &mut Ui, d: &Diagnostic, root: &Path) -> bool {
     let place = &d.place;
-    let mut at = place.file.display().to_string();
+    let file = place.file.strip_prefix(root).unwrap_or(&place.file);
+    let mut at = file.display().to_string();
     if place.line > 0 {
         at.push_str(&format!(":{}", place.line));
         if place.column > 0 {
@@ -150,7 +161,7 @@ fn diagnostic(ui: &mut Ui, d: &Diagnostic) -> bool {
         let label = ui.add(egui::Label::new(text).sense(egui::Sense::click()));
         clicked = label
             .on_hover_cursor(egui::CursorIcon::PointingHand)
-            .on_hover_text("Opens the editor")
+            .on_hover_text(format!("Opens {} in the editor", place.file.display()))
             .clicked();
     } else {
         ui.label(text);

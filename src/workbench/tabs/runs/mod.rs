@@ -176,7 +176,7 @@ impl Workbench {
             if (page.is_file() || (reports.is_some() && idle)) && button(ui, "Report", about) {
                 match reports.filter(|_| idle) {
                     Some(words) => self.run_command(&words, run.kind, &run.folder, Some(page)),
-                    None => self.messages.status = editor::show(&page),
+                    None => self.opened(editor::show(&page)),
                 }
             }
         });
@@ -283,7 +283,7 @@ impl Workbench {
             self.tabs.runs.said = Some((ok, text));
             (self.tabs.runs.running, self.tabs.runs.list) = (None, None);
             if let Some(page) = report {
-                self.messages.status = editor::show(&page);
+                self.opened(editor::show(&page));
             } else if ok && kind != Kind::Sweep {
                 let path = kind.table(&folder);
                 let rows = path.is_file().then(|| list::table(&path));
