@@ -48,6 +48,7 @@ impl Workbench {
     }
 
     fn message_rows(&mut self, ui: &mut Ui) {
+        self.trouble_row(ui);
         let sides = self.sides.iter().zip(["A", "B"]);
         let root = &self.setup.home.root;
         let open = sides.filter_map(|(side, name)| side_rows(ui, side, name, root));
@@ -57,6 +58,10 @@ impl Workbench {
         if self.scene.warned {
             self.scene_row(ui);
         }
+    }
+
+    /// A message that belongs to no file, above the others, which may need scrolling.
+    fn trouble_row(&mut self, ui: &mut Ui) {
         let Some(trouble) = self.messages.trouble.clone() else {
             return;
         };
@@ -102,7 +107,7 @@ impl Workbench {
         ui.horizontal_wrapped(|ui| {
             ui.colored_label(ui.visuals().warn_fg_color, format!("scene: {first}{more}"));
             let dismiss = ui.small_button("dismiss");
-            let dismiss = dismiss.on_hover_text("It stays on the Scene tab");
+            let dismiss = dismiss.on_hover_text("The Scene tab keeps it");
             self.scene.warned = !dismiss.clicked();
         });
     }
