@@ -610,3 +610,68 @@ fn a_path_stops_at_its_last_key_and_is_saved_by_enter() {
     driver.widget(|w| w["label"] == "path name" && w["value"] == name);
     driver.close();
 }
+
+/// A scene file without its model is greyed out in the menu, and its tooltip names the missing file.
+#[test]
+fn a_scene_without_its_model_cannot_be_chosen() {
+    let mut driver = small();
+    driver.first_picture();
+    driver.write(
+        "configs/scenes/absent.ron",
+        "(models: [(file: \"nowhere/absent.obj\")])",
+    );
+    driver.click("", "scene: cornell");
+    let at = centre(driver.find("Button", "absent"));
+    driver.point_at(at);
+    driver.texts_until("the missing file", |texts| {
+        texts
+            .iter()
+            .any(|t| t.starts_with("model 'nowhere/absent.obj' not found; looked in: "))
+    });
+    let mark = driver.now();
+    driver.click_at(at);
+    driver.click("Button", "plain");
+    driver.wait(mark, "the next scene", |e| {
+        e["event"] == "loaded" && e["scene"] == "plain"
+    });
+    let failed = |e: &&serde_json::Value| e["event"] == "load failed";
+    assert_eq!(driver.events.iter().find(failed), None);
+    driver.close();
+}
+
+/// While a view of voxels is shown, the mip of *Inspect* is that of the view.
+#[test]
+fn the_inspected_mip_is_that_of_the_voxel_view() {
+    let mut driver = WindowDriver::open(CONES, &["--size", "160x120", "--set", "mips=isotropic"]);
+    let first = driver.first_picture();
+    driver.grow_lower_tabs();
+    driver.click("", "Inspect");
+    driver.click("ComboBox", "texture radiance");
+    let is_volume = |w: &serde_json::Value| {
+        w["role"] == "Button"
+            && w["label"]
+                .as_str()
+                .is_some_and(|l| l.starts_with("voxelRadiance"))
+    };
+    let at = centre(driver.widget(is_volume));
+    driver.click_at(at);
+    let mark = driver.now();
+    driver.click("Button", "voxels: radiance");
+    driver.other_picture(mark, 0, &first);
+    let finest = driver.resting(0);
+    let mark = driver.now();
+    let [left, top, right, bottom] = driver.find("Slider", "mip");
+    driver.click_at((left + 0.6 * (right - left), (top + bottom) / 2.0));
+    driver.other_picture(mark, 0, &finest);
+    let coarse = driver.resting(0);
+    assert_ne!(coarse, finest);
+    // The other way: the parameter moves the slider.
+    driver.click("", "search parameters");
+    driver.text("voxel_view_mip");
+    driver.click("Button", "reset voxel_view_mip");
+    let slider =
+        |w: &serde_json::Value| w["role"] == "Slider" && w["label"] == "mip" && w["value"] == 0.0;
+    driver.widget(slider);
+    assert_eq!(driver.resting(0), finest);
+    driver.close();
+}

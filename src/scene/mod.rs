@@ -42,6 +42,7 @@ use serde::Deserialize;
 pub use environment::SUN;
 pub(crate) use environment::{Environment, SkyPicture};
 pub use error::SceneError;
+pub(crate) use file::missing_model;
 pub(crate) use formats::{SCENE_FILE, extensions, model_extensions};
 pub use light::{Light, LightFields, LightKind};
 pub(crate) use limits::MAX_COORDINATE;

@@ -3,6 +3,7 @@
 use crate::experiment::Experiment;
 use crate::graph::file::CompareDecl;
 use crate::results::timers::Rows;
+use crate::scene::missing_model;
 use crate::workbench::desired::edit;
 use crate::workbench::desired::request::SideRequest;
 use crate::workbench::engine::Order;
@@ -56,7 +57,7 @@ impl Workbench {
         ui.separator();
         let compares = self.desired.sides[1].is_some();
         let toggle = ui.selectable_label(compares, "A | B").on_hover_text(
-            "Compare with a second experiment (B). Off, A returns to its values from before unless you edited it",
+            "Compares with a second experiment (B). Switching it off restores A's earlier values unless A was edited",
         );
         if toggle.clicked() {
             self.toggle_comparison();
@@ -182,7 +183,7 @@ impl Workbench {
                     }
                 }
             });
-            ui.weak("Ctrl + and Ctrl - change it, too");
+            ui.weak("Also Ctrl + and Ctrl -");
             ui.separator();
             if ui.button("Reset the layout").clicked() {
                 self.dock.reset();
@@ -306,10 +307,14 @@ impl Workbench {
             }
             ui.separator();
             for path in ron_files(&self.setup.home.root.join("configs/scenes")) {
-                if ui.button(short(&path.to_string_lossy())).clicked() {
+                let missing = missing_model(&path);
+                let button = egui::Button::new(short(&path.to_string_lossy()));
+                let button = ui.add_enabled(missing.is_none(), button);
+                if button.clicked() {
                     chosen = Some(path.to_string_lossy().into_owned());
                     ui.close();
                 }
+                button.on_disabled_hover_text(missing.unwrap_or_default());
             }
             ui.separator();
             if let Some(spec) = self.scene.models.menu(ui) {

@@ -190,23 +190,18 @@ fn load_model(
         return open_builtin(name, progress);
     }
     let file = entry.file.as_deref().unwrap_or_default();
-    let candidates = places(file, scene_file);
-    let Some(found) = candidates.iter().find(|candidate| candidate.is_file()) else {
+    let found = model_file(file, scene_file).map_err(|message| {
+        let candidates = places(file, scene_file);
         candidates.iter().for_each(|c| progress.reads(c));
         let (line, column) = position_of(text, file);
-        let tried: Vec<String> = candidates.iter().map(|c| c.display().to_string()).collect();
-        let message = format!(
-            "model '{file}' not found; looked in: {}. Correct the path, or set CONELAB_SCENES to the folder that holds it",
-            tried.join(", ")
-        );
-        return Err(SceneError::NoModel {
+        SceneError::NoModel {
             path: scene_file.into(),
             line,
             column,
             message,
-        });
-    };
-    let mut model = formats::load_model(found, entry.clip.as_deref(), progress)?;
+        }
+    })?;
+    let mut model = formats::load_model(&found, entry.clip.as_deref(), progress)?;
     if entry.lights {
         model.sky = defaults::sky_over(&model);
     } else {
@@ -218,6 +213,28 @@ fn load_model(
             .retain(|warning| !warning.contains(gltf::SCALE));
     }
     Ok(model)
+}
+
+/// The message about the first model file of a scene file that does not exist. `None` if all exist
+/// or the scene file cannot be read.
+pub(crate) fn missing_model(scene_file: &Path) -> Option<String> {
+    let text = read_input_text(scene_file, MAX_BYTES).ok()?;
+    let models = parse(&text, scene_file).ok()?.models;
+    let mut files = models.iter().filter_map(|entry| entry.file.as_deref());
+    files.find_map(|file| model_file(file, scene_file).err())
+}
+
+/// Path of a model that a scene file names.
+fn model_file(file: &str, scene_file: &Path) -> Result<PathBuf, String> {
+    let candidates = places(file, scene_file);
+    let found = candidates.iter().find(|candidate| candidate.is_file());
+    found.cloned().ok_or_else(|| {
+        let tried: Vec<String> = candidates.iter().map(|c| c.display().to_string()).collect();
+        format!(
+            "model '{file}' not found; looked in: {}. Correct the path, or set CONELAB_SCENES to the folder that holds it",
+            tried.join(", ")
+        )
+    })
 }
 
 /// Candidate paths of a file: the scene file's folder, then the folders of CONELAB_SCENES.
