@@ -1547,6 +1547,30 @@ fn pointers_that_point_nowhere() {
 }
 
 #[test]
+fn mips_of_views_that_are_not_there() {
+    let mips = |entry: &str| {
+        let new = format!("view_mips: {{ {entry} }}, output: \"picture\"");
+        graph("output: \"picture\"", &new)
+    };
+    assert_eq!(mips(r#""grid": "cells""#), "");
+    assert_snapshot!(mips(r#""gird": "cells""#), @r#"
+    passes/graph.ron:29:18: error: no texture is named 'gird'
+        |     view_mips: { "gird": "cells" }, output: "picture",
+        = help: did you mean 'grid'?
+    "#);
+    assert_snapshot!(mips(r#""grid": "cell""#), @r#"
+    passes/graph.ron:29:26: error: no Int parameter is named 'cell'
+        |     view_mips: { "grid": "cell" }, output: "picture",
+        = help: did you mean 'cells'?
+    "#);
+    assert_snapshot!(mips(r#""grid": "bright""#), @r#"
+    passes/graph.ron:29:26: error: no Int parameter is named 'bright'
+        |     view_mips: { "grid": "bright" }, output: "picture",
+        = help: known: cells
+    "#);
+}
+
+#[test]
 fn views_that_set_what_there_is_not() {
     let view = |set: &str| {
         let view =

@@ -59,6 +59,8 @@ pub struct Graph {
     /// The `Vec2` parameter that is the inspected slice of a volume: axis, and position from 0 to 1;
     /// negative where none is.
     pub slice: Option<String>,
+    /// Textures with the `Int` parameter that selects their mip in views.
+    pub view_mips: Vec<(String, String)>,
     /// Buffers that may be read as tables, on request.
     pub tables: Vec<Loc<TableDecl>>,
     /// Settings worth comparing.

@@ -63,6 +63,8 @@ pub struct GraphFile {
     pub pointer: Option<Loc<String>>,
     /// The `Vec2` parameter that is the inspected slice of a volume.
     pub slice: Option<Loc<String>>,
+    /// `Int` parameters that select the mip of a texture in views, by texture.
+    pub view_mips: Entries<String>,
     /// Buffers that may be read as tables.
     pub tables: Items<TableDecl>,
     /// Settings worth comparing.

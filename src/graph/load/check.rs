@@ -19,6 +19,7 @@ pub(super) struct Names {
     pub fit: Entries<Items<RawText>>,
     pub pointer: Option<Loc<String>>,
     pub slice: Option<Loc<String>>,
+    pub view_mips: Entries<String>,
 }
 
 /// The checks of a graph that was read, and the mistakes that they find.
@@ -88,6 +89,10 @@ impl<'g> Check<'g> {
         for (name, what) in [(&names.pointer, "pointer"), (&names.slice, "slice")] {
             let Some(name) = name else { continue };
             self.cursor(name, what);
+        }
+        for (texture, param) in &names.view_mips.0 {
+            self.texture_name(texture);
+            self.view_mip(param);
         }
         if let Some(caption) = &graph.caption {
             self.caption(caption);
@@ -303,6 +308,17 @@ impl<'g> Check<'g> {
     }
 
     /// Checks a parameter that the window sets.
+    /// The name of an `Int` parameter.
+    fn view_mip(&mut self, name: &Loc<String>) {
+        let list = self.graph.params.list.iter();
+        let integers = list.filter(|p| p.kind == Kind::Int);
+        let known: Vec<&str> = integers.map(|p| p.name.as_str()).collect();
+        if !known.contains(&name.value.as_str()) {
+            let message = format!("no Int parameter is named '{}'", name.value);
+            self.found.unknown(name.at, &name.value, message, known);
+        }
+    }
+
     fn cursor(&mut self, name: &Loc<String>, what: &str) {
         let params = &self.graph.params;
         match params.param(&name.value) {

@@ -20,6 +20,7 @@ pub(super) fn add(all: &mut GraphFile, file: GraphFile) {
     replace(&mut all.modules, file.modules);
     replace(&mut all.values, file.values);
     replace(&mut all.tools, file.tools);
+    replace(&mut all.view_mips, file.view_mips);
     for (name, title) in file.pinned.0 {
         match all.pinned.0.iter_mut().find(|p| p.0.value == name.value) {
             Some(known) => known.1 = title,
@@ -56,6 +57,7 @@ pub(super) fn leave_out_fixed(file: &mut GraphFile) {
     let are_free = |set: &Entries<RawText>| set.0.iter().all(|(name, _)| is_free(name));
     file.pinned.0.retain(|(name, _)| is_free(name));
     file.fit.0.retain(|(name, _)| is_free(name));
+    file.view_mips.0.retain(|(_, name)| is_free(name));
     file.compare
         .0
         .retain(|c| are_free(&c.value.a) && are_free(&c.value.b));

@@ -47,6 +47,7 @@ pub fn load(
         fit: file.fit,
         pointer: file.pointer,
         slice: file.slice,
+        view_mips: file.view_mips,
     };
     let stem = path.file_stem().unwrap_or_default();
     let graph = Graph {
@@ -71,6 +72,7 @@ pub fn load(
         caption: file.caption,
         pointer: names.pointer.as_ref().map(|name| name.value.clone()),
         slice: names.slice.as_ref().map(|name| name.value.clone()),
+        view_mips: texts(&names.view_mips),
         tables: file.tables.0,
         compare: file.compare.0,
         views: file.views.0,

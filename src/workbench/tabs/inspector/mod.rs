@@ -269,7 +269,9 @@ impl Workbench {
             ui.weak(help);
         }
         let plan = info.textures.get(index)?.clone();
+        let mip = target.mip;
         choose_part(ui, &plan, target);
+        self.link_mip(info, mip, plan.mips.saturating_sub(1));
         if plan.volume {
             self.show_slice(ui, info, &plan);
         }
@@ -378,13 +380,13 @@ impl Workbench {
         ui.horizontal(|ui| {
             let speed = f64::from((tone.high - tone.low).abs()).max(1e-6) * 0.005;
             let field = DragValue::new(&mut tone.low).speed(speed).max_decimals(6);
-            spin(ui, field, "black").on_hover_text("This value is black");
+            spin(ui, field, "black").on_hover_text("Value shown as black");
             ui.label("to");
             let field = DragValue::new(&mut tone.high).speed(speed).max_decimals(6);
-            spin(ui, field, "white").on_hover_text("This value is white");
+            spin(ui, field, "white").on_hover_text("Value shown as white");
             fit = ui
                 .button("fit range")
-                .on_hover_text("From the least to the greatest finite value")
+                .on_hover_text("From the smallest to the largest finite value")
                 .clicked();
             if ui.button("0 to 1").clicked() {
                 (tone.low, tone.high, tone.stops) = (0.0, 1.0, 0.0);
@@ -392,12 +394,12 @@ impl Workbench {
         });
         let mut encoded = !tone.raw;
         ui.checkbox(&mut encoded, "linear light").on_hover_text(
-            "The values are light and are encoded for the screen (sRGB); else they are shown as they are. rgba8_srgb holds encoded values",
+            "Treats values as linear light and encodes them for the screen (sRGB). Off: values are shown unchanged. rgba8_srgb textures are already encoded",
         );
         tone.raw = !encoded;
         if plan.format.count == 4 {
             ui.checkbox(&mut tone.checkerboard, "alpha over a checkerboard")
-                .on_hover_text("Colours are taken as premultiplied by alpha");
+                .on_hover_text("Treats colours as premultiplied by alpha");
         }
         let marked = self.tabs.inspector.shown.as_ref().map(|s| s.marked);
         marks(ui, &mut tone.marks, marked.unwrap_or_default());

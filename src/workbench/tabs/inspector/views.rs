@@ -1,8 +1,11 @@
 //! Views that the graph offers: one click sets a few parameters, another puts them back.
 
 use super::Workbench;
-use crate::graph::param::Value;
+use crate::graph::file::ViewDecl;
+use crate::graph::param::{Param, Value};
 use crate::workbench::desired::edit;
+use crate::workbench::desired::request::SideRequest;
+use crate::workbench::engine::report::GraphInfo;
 use egui::Ui;
 
 /// Earlier parameters of a view: side, name, value.
@@ -46,20 +49,42 @@ impl Workbench {
         let (Some(view), Some(desired)) = (chosen, &mut self.desired.sides[side]) else {
             return;
         };
-        for (name, text) in &view.set.0 {
-            let Some(param) = info.graph.params.param(&name.value) else {
-                continue;
-            };
-            let Ok(value) = param.parse(&text.value.0) else {
-                continue;
-            };
+        // Views start at the inspected mip.
+        let target = &self.tabs.inspector.target;
+        let mip = mip_param(&info, &target.texture).map(|p| (p, Value::Int(target.mip.into())));
+        for (param, value) in settings(&info, view).chain(mip) {
             let before = &mut self.tabs.inspector.before.0;
-            if !before.iter().any(|b| b.0 == side && b.1 == name.value) {
-                let old = desired.params.iter().find(|p| p.0 == name.value);
+            if !before.iter().any(|b| b.0 == side && b.1 == param.name) {
+                let old = desired.params.iter().find(|p| p.0 == param.name);
                 let old = old.map(|p| p.1.clone());
-                before.push((side, name.value.clone(), old));
+                before.push((side, param.name.clone(), old));
             }
             edit::set(desired, param, &value);
+        }
+    }
+
+    /// While a view is shown, the inspected mip and the parameter for the mip of the view are the
+    /// same. `inspected` is the mip before the slider.
+    pub(super) fn link_mip(&mut self, info: &GraphInfo, inspected: u32, last: u32) {
+        let target = &mut self.tabs.inspector.target;
+        let Some(param) = mip_param(info, &target.texture) else {
+            return;
+        };
+        let Some(desired) = &mut self.desired.sides[target.side] else {
+            return;
+        };
+        if !info
+            .graph
+            .views
+            .iter()
+            .any(|v| is_shown(info, &v.value, desired))
+        {
+            return;
+        }
+        if target.mip != inspected {
+            edit::set(desired, param, &Value::Int(target.mip.into()));
+        } else if let Value::Int(mip) = edit::value(desired, param) {
+            target.mip = u32::try_from(mip).unwrap_or(0).min(last);
         }
     }
 
@@ -72,4 +97,26 @@ impl Workbench {
             edit::put(desired, &name, old);
         }
     }
+}
+
+/// Parameters and values of a view.
+fn settings<'v>(
+    info: &'v GraphInfo,
+    view: &'v ViewDecl,
+) -> impl Iterator<Item = (&'v Param, Value)> {
+    view.set.0.iter().filter_map(|(name, text)| {
+        let param = info.graph.params.param(&name.value)?;
+        Some((param, param.parse(&text.value.0).ok()?))
+    })
+}
+
+/// Whether a side has the values of a view.
+fn is_shown(info: &GraphInfo, view: &ViewDecl, side: &SideRequest) -> bool {
+    settings(info, view).all(|(param, value)| edit::value(side, param) == value)
+}
+
+/// The parameter that selects the mip of a texture in views.
+fn mip_param<'i>(info: &'i GraphInfo, texture: &str) -> Option<&'i Param> {
+    let known = info.graph.view_mips.iter().find(|v| v.0 == texture)?;
+    info.graph.params.param(&known.1)
 }
