@@ -139,3 +139,28 @@ fn grey_on_grey_is_found() {
     assert_eq!(hard_to_read(&image, &[text(230, 11.0)]).len(), 1);
     assert_eq!(hard_to_read(&image, &[text(230, 14.0)]).len(), 0);
 }
+
+/// A label may name a widget below the visible part of a list: it is scrolled into view and clicked there.
+#[test]
+fn a_click_on_a_label_reaches_a_widget_that_is_scrolled_away() {
+    let home = common::home();
+    let (shot, list) = (home.path().join("shot.png"), home.path().join("texts.json"));
+    let texts = |clicks: &[&str]| -> Vec<String> {
+        let mut command = conelab(home.path());
+        command.args(["screenshot", "configs/cones.ron", "--window", "1600x500"]);
+        command.args(SMALL);
+        for click in clicks {
+            command.args(["--click", click]);
+        }
+        succeeds(command.arg("--texts").arg(&list).arg("-o").arg(&shot));
+        let texts: Vec<Value> = serde_json::from_slice(&std::fs::read(&list).unwrap()).unwrap();
+        let text = |text: &Value| text["text"].as_str().unwrap().to_string();
+        texts.iter().map(text).collect()
+    };
+    let group = |texts: &[String]| texts.iter().any(|t| t.starts_with("Display"));
+    let inside = |texts: &[String]| texts.iter().any(|t| t == "voxel_view_cascade");
+    let before = texts(&[]);
+    assert!(!group(&before) && !inside(&before), "{before:?}");
+    let after = texts(&["Display"]);
+    assert!(group(&after) && inside(&after), "{after:?}");
+}

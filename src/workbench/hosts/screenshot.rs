@@ -11,7 +11,7 @@ use crate::results::stats::{Spread, spread};
 use crate::vulkan::{Gpu, GpuOptions, Painter};
 use crate::workbench::{Options, PICTURES, Workbench, theme};
 use crossbeam_channel::{Receiver, unbounded};
-use egui::accesskit::{Node, NodeId};
+use egui::accesskit::{Action, ActionRequest, Node, NodeId, TreeId};
 use egui::epaint::textures::TexturesDelta;
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, TextureId, Vec2};
 use std::collections::HashMap;
@@ -175,7 +175,7 @@ impl Host {
     fn run(&mut self) -> Result<Shot, LabError> {
         self.settle()?;
         for click in self.script.clicks.clone() {
-            let at = self.find(&click)?;
+            let at = self.target(&click)?;
             // As a hand does it: there, down, up, each in a frame of its own.
             self.frame(vec![Event::PointerMoved(at)])?;
             for pressed in [true, false] {
@@ -235,7 +235,7 @@ impl Host {
         let stamp = |host: &Host| host.workbench.last_picture();
         let Some((first, _)) = stamp(self) else {
             return Err(LabError::Request(
-                "there is no picture to keep pace with".into(),
+                "there is no picture yet, so its pace cannot be measured".into(),
             ));
         };
         let (mut engine, mut paints, mut delays) = (Vec::new(), Vec::new(), Vec::new());
@@ -275,7 +275,7 @@ impl Host {
             }
             if now > until {
                 return Err(LabError::Request(
-                    "the engine makes no more pictures: is it kept rendering?".into(),
+                    "the engine has stopped rendering: add --click continuous".into(),
                 ));
             }
         }
@@ -298,7 +298,7 @@ impl Host {
             std::fs::read_to_string(&edit.file).map_err(|e| FileError::content(&edit.file, e))?;
         if original.matches(&edit.from).count() != 1 {
             let message = format!(
-                "'{}' must stand once in '{}'",
+                "'{}' must occur exactly once in '{}'",
                 edit.from,
                 edit.file.display()
             );
@@ -326,13 +326,53 @@ impl Host {
         Ok(times)
     }
 
-    /// Where a widget is; the whole label counts, then its beginning.
-    fn find(&self, label: &str) -> Result<Pos2, LabError> {
+    /// The point to click: a place `X,Y`, or the centre of a widget, which is scrolled into view.
+    fn target(&mut self, label: &str) -> Result<Pos2, LabError> {
         if let Some((x, y)) = label.split_once(',')
             && let (Ok(x), Ok(y)) = (x.trim().parse(), y.trim().parse())
         {
             return Ok(Pos2::new(x, y));
         }
+        let node = self.find(label)?;
+        if !self.is_visible(node) {
+            let request = ActionRequest {
+                action: Action::ScrollIntoView,
+                target_tree: TreeId::ROOT,
+                target_node: node,
+                data: None,
+            };
+            self.frame(vec![Event::AccessKitActionRequest(request)])?;
+            self.settle()?;
+        }
+        let bounds = self.nodes.get(&node).and_then(Node::bounds);
+        let bounds = bounds.filter(|_| self.is_visible(node));
+        let bounds = bounds.ok_or_else(|| {
+            LabError::Request(format!(
+                "the widget labelled '{label}' is not visible: take a larger --window"
+            ))
+        })?;
+        Ok(Pos2::new(
+            (bounds.x0 + bounds.x1) as f32 / 2.0,
+            (bounds.y0 + bounds.y1) as f32 / 2.0,
+        ) / self.script.scale)
+    }
+
+    /// Whether the centre of a widget is inside the scroll areas around it, and in the window.
+    fn is_visible(&self, node: NodeId) -> bool {
+        let screen = self.context.content_rect();
+        self.context.viewport(|viewport| {
+            let layers = viewport.prev_pass.widgets.layers();
+            let mut widgets = layers.flat_map(|layer| layer.1);
+            let widget = widgets.find(|w| w.id.accesskit_id() == node);
+            widget.is_none_or(|w| {
+                let shown = w.interact_rect.intersect(screen);
+                shown.is_positive() && shown.contains(w.rect.center())
+            })
+        })
+    }
+
+    /// The widget with a label, or with a label that starts like this.
+    fn find(&self, label: &str) -> Result<NodeId, LabError> {
         let of = |node: &Node| {
             node.label()
                 .or(node.value())
@@ -342,22 +382,19 @@ impl Host {
         let with = |fits: &dyn Fn(&str) -> bool| {
             let found = self
                 .nodes
-                .values()
-                .filter(|n| fits(&of(n)))
-                .filter_map(|n| n.bounds());
-            found.min_by(|a, b| {
+                .iter()
+                .filter(|(_, n)| fits(&of(n)))
+                .filter_map(|(id, n)| Some((*id, n.bounds()?)));
+            let first = found.min_by(|(_, a), (_, b)| {
                 (a.y0, a.x0)
                     .partial_cmp(&(b.y0, b.x0))
                     .unwrap_or(std::cmp::Ordering::Equal)
-            })
+            });
+            first.map(|(id, _)| id)
         };
-        let bounds = with(&|l| l == label).or_else(|| with(&|l| l.starts_with(label)));
-        let bounds =
-            bounds.ok_or_else(|| LabError::Request(format!("no widget is labelled '{label}'")))?;
-        Ok(Pos2::new(
-            (bounds.x0 + bounds.x1) as f32 / 2.0,
-            (bounds.y0 + bounds.y1) as f32 / 2.0,
-        ) / self.script.scale)
+        with(&|l| l == label)
+            .or_else(|| with(&|l| l.starts_with(label)))
+            .ok_or_else(|| LabError::Request(format!("no widget is labelled '{label}'")))
     }
 
     /// Frames until everything requested is there and nothing moves any more.
@@ -372,7 +409,7 @@ impl Host {
                     .trouble()
                     .map_or(String::new(), |t| format!(": {t}"));
                 return Err(LabError::Request(format!(
-                    "the picture was not there after {seconds} s{why}"
+                    "no picture after {seconds} s{why}"
                 )));
             }
             self.frame(Vec::new())?;
