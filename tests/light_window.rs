@@ -128,6 +128,14 @@ fn a_scene_without_light_gets_a_headlight_that_is_saved() {
     let black = click(&mut driver, "Button", "remove the headlight");
     let [width, height] = [160, 120];
     assert_eq!(black, fingerprint(&vec![0; 4 * width * height]));
+    // The removal is saved, and no headlight returns when the file is opened again.
+    assert_eq!(rendered(&mut driver), black);
+    let saved = driver.file("configs/opened.ron");
+    assert!(saved.contains("\"headlight\": (remove: true)"), "{saved}");
+    driver.close();
+    drop(driver);
+    let mut driver = open(&saved);
+    assert_eq!(driver.resting(0), black);
     driver.close();
 }
 

@@ -103,6 +103,8 @@ pub struct LightState {
     pub sky: Vec3,
     /// Rotation of the sky's picture about y, degrees.
     pub rotation: f32,
+    /// Whether the headlight of an unlit scene was removed.
+    pub without_headlight: bool,
 }
 
 impl LightState {
@@ -113,6 +115,7 @@ impl LightState {
             lights: scene.lights.clone(),
             sky: scene.sky,
             rotation,
+            without_headlight: false,
         }
     }
 

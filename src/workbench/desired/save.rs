@@ -1,5 +1,6 @@
 //! Saving: experiments and captures, as the window's state says.
 
+use super::lights::HEADLIGHT;
 use super::request::{LightState, RenderRequest, SideRequest};
 use crate::diagnostics::{At, Loc};
 use crate::experiment::{CameraChoice, EnvironmentChange, Experiment};
@@ -35,6 +36,7 @@ pub fn experiment(
             lights,
             sky,
             rotation,
+            without_headlight,
         }),
         Some(scene),
     ) = (&desired.lights, scene)
@@ -46,6 +48,11 @@ pub fn experiment(
             .filter(|e| e.rotation != *rotation)
             .map(|_| *rotation);
         experiment.lights = light_changes(lights, &scene.lights);
+        if *without_headlight {
+            let (value, at) = (HEADLIGHT.to_string(), At::default());
+            let removal = (Loc { value, at }, LightFields::removal());
+            experiment.lights.push(removal);
+        }
     }
     experiment.environment =
         (picture != EnvironmentChange::default()).then_some(Loc { value: picture, at });
@@ -109,8 +116,14 @@ pub fn lights(experiment: &Experiment, scene: &Arc<Scene>) -> Result<Option<Ligh
     {
         return Ok(None);
     }
-    let adapted = experiment.adapted(scene.clone())?;
-    Ok(Some(LightState::of(&adapted)).filter(|lights| *lights != LightState::of(scene)))
+    let is_headlight = |name: &str| name == HEADLIGHT;
+    let mut changes = experiment.lights.iter();
+    let lights = LightState {
+        without_headlight: changes.any(|(name, c)| is_headlight(&name.value) && c.removes())
+            && !scene.lights.iter().any(|light| is_headlight(&light.name)),
+        ..LightState::of(&*experiment.adapted(scene.clone())?)
+    };
+    Ok(Some(lights).filter(|lights| *lights != LightState::of(scene)))
 }
 
 /// Captures an experiment into `folder/NAME`, or the next name that is free.

@@ -29,6 +29,7 @@ impl Workbench {
             // These controls still show the light of the sky before.
             return;
         }
+        let had_headlight = now.lights.iter().any(is_headlight);
         headlight(ui, &mut now.lights);
         let added = self.add_menu(ui, &now, &own);
         let selected = &mut self.tabs.surroundings.selected;
@@ -43,6 +44,10 @@ impl Workbench {
                 selected.take_if(|name| *name == removed.name);
             }
             None => {}
+        }
+        if had_headlight && !now.lights.iter().any(is_headlight) {
+            // A headlight of the scene's own is removed like any light.
+            now.without_headlight = !own.lights.iter().any(is_headlight);
         }
         let differs = now != own;
         let reset = egui::Button::new("reset lights");
@@ -69,16 +74,19 @@ impl Workbench {
     }
 }
 
+fn is_headlight(light: &Light) -> bool {
+    light.name == new::HEADLIGHT
+}
+
 /// A note about the headlight, if there is one.
 fn headlight(ui: &mut Ui, lights: &mut Vec<Light>) {
-    let is_one = |light: &Light| light.name == new::HEADLIGHT;
-    if !lights.iter().any(is_one) {
+    if !lights.iter().any(is_headlight) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
         ui.label("No light reaches the first camera. A headlight was added there.");
         if ui.button("remove the headlight").clicked() {
-            lights.retain(|light| !is_one(light));
+            lights.retain(|light| !is_headlight(light));
         }
     });
 }
