@@ -4,7 +4,7 @@ mod common;
 #[path = "common/window_driver.rs"]
 mod window_driver;
 
-use common::{conelab, table};
+use common::{conelab, fails, table};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -90,6 +90,30 @@ fn a_sweep_from_a_parameters_menu_is_that_of_the_command_line_and_resumes_after_
     driver.wait(mark, "both dots", |e| {
         e["event"] == "dots" && e["dots"].as_array().is_some_and(|d| d.len() == 2)
     });
+
+    // A failed point is measured again on request.
+    let failed = folder.join("points").join(&points(&folder)[0]);
+    let mut record: Value = serde_json::from_slice(&std::fs::read(&failed).unwrap()).unwrap();
+    record["outcome"] = serde_json::json!({ "failed": "the device was lost" });
+    std::fs::write(&failed, record.to_string()).unwrap();
+    let file = folder.join(format!("{name}.ron"));
+    let mut command = conelab(driver.home.path());
+    let said = fails(command.arg("sweep").arg(&file).arg("-o").arg(&folder));
+    assert!(
+        said.contains("1 points failed") && said.contains("--again"),
+        "{said}"
+    );
+    driver.click("", "Runs");
+    driver.click("Button", "refresh runs");
+    let mark = driver.now();
+    driver.click("Button", &format!("Retry failed {name}"));
+    ended(&mut driver, mark);
+    let outcomes = table(&folder.join("sweep.csv"));
+    assert!(
+        outcomes.iter().all(|row| row["outcome"] == "done"),
+        "{outcomes:?}"
+    );
+    let mine = outcomes;
 
     // The same file on the command line measures the same points, and says how far it is.
     let again = driver.home.path().join("again");

@@ -664,7 +664,7 @@ fn killed_and_continued() {
     );
     let message = succeeds(&mut stability(home.path(), &file, "out", &[]));
     assert!(
-        message.contains(&format!("{} are finished already", before.len())),
+        message.contains(&format!("{} already done", before.len())),
         "{message}"
     );
     let after = finished();

@@ -109,7 +109,7 @@ fn a_sweep_that_is_killed_again_and_again_ends_as_one_that_is_not() {
         kept = now;
     }
     let said = succeeds(&mut sweep(home.path(), &file, &killed, &[]));
-    assert!(said.contains("points are finished already"), "{said}");
+    assert!(said.contains("points already done"), "{said}");
     let (expected, found) = (
         table(&whole.join("sweep.csv")),
         table(&killed.join("sweep.csv")),

@@ -71,7 +71,7 @@ pub fn bar(points: &str) -> impl FnMut(Progress) {
     move |progress| match progress {
         Progress::Begins { todo, before } => {
             if before > 0 {
-                bar.suspend(|| say!("{before} {points}are finished already, {todo} to go"));
+                bar.suspend(|| say!("{before} {points}already done, {todo} remaining"));
             }
             bar.reset();
             bar.set_length(todo as u64);

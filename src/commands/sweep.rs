@@ -72,7 +72,7 @@ pub fn run(args: &SweepArgs) -> Result<(), LabError> {
     match failed {
         0 => Ok(()),
         n => Err(LabError::Request(format!(
-            "{n} points failed: their errors are in sweep.csv"
+            "{n} points failed: their errors are in sweep.csv; --again measures them again"
         ))),
     }
 }

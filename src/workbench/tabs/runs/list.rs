@@ -17,6 +17,8 @@ pub(super) struct Run {
     /// The plan, if it was started in the window: then it can be resumed.
     pub plan: Option<Plan>,
     pub finished: bool,
+    /// Failed points of a sweep.
+    pub failed: usize,
 }
 
 impl Run {
@@ -49,12 +51,31 @@ fn run(kind: Kind, folder: PathBuf) -> Run {
         Kind::Fit => folder.join("trials.ron").is_file() || folder.with_extension("ron").is_file(),
         _ => kind.table(&folder).is_file(),
     };
+    let failed = match kind {
+        Kind::Sweep if finished => failed(&kind.table(&folder)),
+        _ => 0,
+    };
     Run {
         kind,
+        failed,
         plan: plan.filter(|p| p.kind == kind),
         folder,
         finished,
     }
+}
+
+/// Number of failed points in the table of a sweep. 0 if it cannot be read.
+fn failed(path: &Path) -> usize {
+    let bytes = read_input(path, MOST[1]).unwrap_or_default();
+    let mut reader = csv::Reader::from_reader(bytes.as_slice());
+    let outcome = reader
+        .headers()
+        .ok()
+        .and_then(|head| head.iter().position(|name| name == "outcome"));
+    let records = reader.records().flatten();
+    records
+        .filter(|row| outcome.and_then(|i| row.get(i)) == Some("failed"))
+        .count()
 }
 
 /// Rows of a table, the head first.

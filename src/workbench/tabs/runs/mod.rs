@@ -90,7 +90,7 @@ impl Workbench {
         let root = &self.setup.home.root;
         let list = self.tabs.runs.list.get_or_insert_with(|| list::list(root));
         if list.is_empty() {
-            ui.weak("None yet. Finished runs are kept in captures and listed here.");
+            ui.weak("None yet. Finished runs are saved in captures and listed here.");
         }
         for run in list.clone() {
             self.run_row(ui, &run);
@@ -149,7 +149,11 @@ impl Workbench {
         let idle = self.tabs.runs.running.is_none();
         ui.horizontal_wrapped(|ui| {
             ui.label(&name);
-            let state = if run.finished { "" } else { ", unfinished" };
+            let state = match (run.finished, run.failed) {
+                (false, _) => ", unfinished".into(),
+                (true, 0) => String::new(),
+                (true, n) => format!(", {n} failed"),
+            };
             ui.weak(format!("{}{state}", run.kind.title()));
             let button = |ui: &mut Ui, text: &str, about: &str| {
                 small_button(ui, text, &format!("{text} {name}"), about)
@@ -159,6 +163,14 @@ impl Workbench {
                 && button(ui, "Resume", "Measures the missing points")
             {
                 let words = plan.command(&run.folder, &name);
+                self.run_command(&words, run.kind, &run.folder, None);
+            }
+            let plan = run.plan.as_ref().filter(|_| idle && run.failed > 0);
+            if let Some(plan) = plan
+                && button(ui, "Retry failed", "Measures the failed points again")
+            {
+                let mut words = plan.command(&run.folder, &name);
+                words.push("--again".into());
                 self.run_command(&words, run.kind, &run.folder, None);
             }
             if run.kind == Kind::Sweep && button(ui, "Chart", "Error against time") {

@@ -133,6 +133,6 @@ mod tests {
     #[test]
     fn progress_is_read_from_lines_of_campaigns() {
         assert_eq!(progress("2 of 5 finished, 12 s: a title"), Some((2, 5)));
-        assert_eq!(progress("2 points are finished already, 3 to go"), None);
+        assert_eq!(progress("2 points already done, 3 remaining"), None);
     }
 }
