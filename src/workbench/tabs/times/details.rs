@@ -3,6 +3,7 @@
 use super::table::{Row, digits};
 use super::{Asked, Times};
 use crate::graph::run::PassExecutables;
+use crate::vulkan::Statistic;
 use crate::workbench::Workbench;
 use crate::workbench::engine::Order;
 use crate::workbench::engine::report::PassUses;
@@ -69,7 +70,7 @@ impl Workbench {
             match &self.tabs.times.statistics[side] {
                 Asked::No => {
                     let about = "Registers, spills and sizes of the pipeline as the driver reports them. \
-                        Compiles all pipelines once more beside the running ones, which takes seconds";
+                        Recompiles all pipelines in the background, which takes seconds";
                     if ui.button("Pipeline statistics").on_hover_text(about).clicked() {
                         wish = Some(Wish::Statistics(side));
                     }
@@ -121,11 +122,21 @@ impl Times {
     }
 }
 
+/// Drivers report numbers from here on for unknown ones: NVIDIA's "Local Memory Size" is 2^36.
+const UNKNOWN: f64 = (1_u64 << 32) as f64;
+
+fn statistic(statistic: &Statistic) -> String {
+    match statistic.value {
+        value if value >= UNKNOWN => format!("{} not reported", statistic.name),
+        value => format!("{} {value}", statistic.name),
+    }
+}
+
 fn lines(passes: &[PassExecutables], name: &str) -> Vec<String> {
     let own = passes.iter().filter(|p| p.pass == name);
     let line = |(executable, limit): &(crate::vulkan::Executable, Option<f64>)| {
         let each = executable.statistics.iter();
-        let mut parts: Vec<String> = each.map(|s| format!("{} {}", s.name, s.value)).collect();
+        let mut parts: Vec<String> = each.map(statistic).collect();
         if let Some(limit) = limit {
             let percent = 100.0 * limit;
             parts.push(format!("occupancy limit from registers {percent:.0} %"));
@@ -138,7 +149,7 @@ fn lines(passes: &[PassExecutables], name: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vulkan::{Executable, Statistic};
+    use crate::vulkan::Executable;
 
     #[test]
     fn a_pipeline_is_described_in_the_drivers_words() {
@@ -153,6 +164,7 @@ mod tests {
             statistics: vec![
                 statistic("Register Count", 40.0),
                 statistic("Stack Size", 0.0),
+                statistic("Local Memory Size", 68_719_476_736.0),
             ],
         };
         let passes = [PassExecutables {
@@ -162,7 +174,8 @@ mod tests {
         assert_eq!(
             lines(&passes, "gather"),
             [
-                "Compute Shader: Register Count 40, Stack Size 0, occupancy limit from registers 75 %"
+                "Compute Shader: Register Count 40, Stack Size 0, Local Memory Size not reported, \
+                 occupancy limit from registers 75 %"
             ]
         );
         assert!(lines(&passes, "other").is_empty());
