@@ -46,7 +46,8 @@ view: ## Open the workbench
 shot: ## Take the README's picture of the workbench
 	@scripts/setup.sh build run
 	@$(CONELAB) screenshot configs/cones.ron --scene atrium --size 800x600 --window 1600x900 \
-		--click Compare --click "cones | rays" --click timers --click Chart $(ARGS) -o docs/workbench.jpg
+		--click Compare --click "cones | rays" --click timers --click Chart --click "Render reference" \
+		--patience 600 $(ARGS) -o docs/workbench.jpg
 
 quick: ## Run the tests that take a minute together
 	@scripts/setup.sh build run test

@@ -145,10 +145,10 @@ fn grey_on_grey_is_found() {
 fn a_click_on_a_label_reaches_a_widget_that_is_scrolled_away() {
     let home = common::home();
     let (shot, list) = (home.path().join("shot.png"), home.path().join("texts.json"));
-    let texts = |clicks: &[&str]| -> Vec<String> {
+    let texts = |(scale, window): (&str, &str), clicks: &[&str]| -> Vec<String> {
         let mut command = conelab(home.path());
-        command.args(["screenshot", "configs/cones.ron", "--window", "1600x500"]);
-        command.args(SMALL);
+        command.args(["screenshot", "configs/cones.ron", "--window", window]);
+        command.args(SMALL).args(["--scale", scale]);
         for click in clicks {
             command.args(["--click", click]);
         }
@@ -159,8 +159,10 @@ fn a_click_on_a_label_reaches_a_widget_that_is_scrolled_away() {
     };
     let group = |texts: &[String]| texts.iter().any(|t| t.starts_with("Display"));
     let inside = |texts: &[String]| texts.iter().any(|t| t == "voxel_view_cascade");
-    let before = texts(&[]);
-    assert!(!group(&before) && !inside(&before), "{before:?}");
-    let after = texts(&["Display"]);
-    assert!(group(&after) && inside(&after), "{after:?}");
+    for screen in [("1", "1600x500"), ("2", "2400x1000")] {
+        let before = texts(screen, &[]);
+        assert!(!group(&before) && !inside(&before), "{before:?}");
+        let after = texts(screen, &["Display"]);
+        assert!(group(&after) && inside(&after), "{after:?}");
+    }
 }

@@ -351,10 +351,11 @@ impl Host {
                 "the widget labelled '{label}' is not visible: take a larger --window"
             ))
         })?;
+        // In points, as the positions of events: the scale is a transform of the root.
         Ok(Pos2::new(
             (bounds.x0 + bounds.x1) as f32 / 2.0,
             (bounds.y0 + bounds.y1) as f32 / 2.0,
-        ) / self.script.scale)
+        ))
     }
 
     /// Whether the centre of a widget is inside the scroll areas around it, and in the window.
