@@ -630,12 +630,10 @@ fn a_scene_without_its_model_cannot_be_chosen() {
     });
     let mark = driver.now();
     driver.click_at(at);
-    driver.click("Button", "plain");
-    driver.wait(mark, "the next scene", |e| {
-        e["event"] == "loaded" && e["scene"] == "plain"
-    });
-    let failed = |e: &&serde_json::Value| e["event"] == "load failed";
-    assert_eq!(driver.events.iter().find(failed), None);
+    std::thread::sleep(Duration::from_millis(500));
+    driver.now();
+    let reads = |e: &&serde_json::Value| e["event"] == "loaded" || e["event"] == "load failed";
+    assert_eq!(driver.events[mark..].iter().find(reads), None);
     driver.close();
 }
 
@@ -644,7 +642,6 @@ fn a_scene_without_its_model_cannot_be_chosen() {
 fn the_inspected_mip_is_that_of_the_voxel_view() {
     let mut driver = WindowDriver::open(CONES, &["--size", "160x120", "--set", "mips=isotropic"]);
     let first = driver.first_picture();
-    driver.grow_lower_tabs();
     driver.click("", "Inspect");
     driver.click("ComboBox", "texture radiance");
     let is_volume = |w: &serde_json::Value| {
@@ -661,7 +658,7 @@ fn the_inspected_mip_is_that_of_the_voxel_view() {
     let finest = driver.resting(0);
     let mark = driver.now();
     let [left, top, right, bottom] = driver.find("Slider", "mip");
-    driver.click_at((left + 0.6 * (right - left), (top + bottom) / 2.0));
+    driver.click_at((left + 0.3 * (right - left), (top + bottom) / 2.0));
     driver.other_picture(mark, 0, &finest);
     let coarse = driver.resting(0);
     assert_ne!(coarse, finest);
