@@ -645,7 +645,7 @@ fn texels_of_the_picture_that_are_no_numbers_are_counted() {
     for (output, told) in [
         (
             "x.png",
-            "texels of the picture are NaN, or light that its format cannot hold (48)",
+            "texels of the picture are NaN or overflow its format (48)",
         ),
         ("x.exr", "'radiance' has 48 texels that are NaN or infinite"),
     ] {
