@@ -73,7 +73,7 @@ fn what_changes_nothing_is_told_with_the_choice_that_it_waits_for() {
     ] {
         assert!(!idle.contains_key(name), "{name}: {:?}", idle.get(name));
     }
-    assert_eq!(idle["volume_center"].text, "where volume == box");
+    assert_eq!(idle["volume_center"].text, "if volume == box");
     for name in [
         "exposure",
         "voxel_dim",
@@ -123,7 +123,7 @@ fn a_warps_parameters_wait_for_the_warp() {
     );
     assert_eq!(
         idle["warp_near"].text,
-        "where warp == perspective || warp == spherical"
+        "if warp == perspective || warp == spherical"
     );
     assert!(!idle.contains_key("warp"));
     let (idle, _) = found("warps.ron", "\"warp\": spline");

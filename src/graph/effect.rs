@@ -245,7 +245,7 @@ impl<'a> Trial<'a> {
     fn reason(&self, param: &Param, texts: &Texts) -> Reason {
         if let Some(when) = param.when.as_ref().filter(|_| self.refuses(param)) {
             return Reason {
-                text: format!("where {}", when.value.text),
+                text: format!("if {}", when.value.text),
                 needs: self.needs_of(when),
             };
         }
@@ -291,8 +291,8 @@ impl<'a> Trial<'a> {
         }
         clauses.truncate(2);
         let text = match clauses.len() {
-            0 => "no pass that runs now reads it".into(),
-            _ => format!("where {}", clauses.join(", or where ")),
+            0 => "no active pass reads it".into(),
+            _ => format!("if {}", clauses.join(", or if ")),
         };
         Reason { text, needs }
     }

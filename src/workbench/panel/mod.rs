@@ -126,7 +126,7 @@ impl Panel {
             |ui| {
                 ui.menu_button("Reset", |ui| reset_menu(ui, graph, side, file))
                     .response
-                    .on_hover_text("Set all parameters back");
+                    .on_hover_text("Resets all parameters");
                 ui.checkbox(&mut self.only_changed, "changed")
                     .on_hover_text("Only parameters that are not at their default");
                 let clear = ui.add_enabled(
@@ -391,8 +391,8 @@ fn help(ui: &mut Ui, param: &Param, idle: Option<&Reason>) {
     ui.strong(&param.name);
     if let Some(why) = idle {
         let why = &why.text;
-        let text = if why.starts_with("where") {
-            format!("it is used only {why}")
+        let text = if why.starts_with("if ") {
+            format!("used only {why}")
         } else {
             why.clone()
         };
