@@ -68,7 +68,7 @@ pub struct Cli {
 enum Command {
     /// Open the workbench in a window (the same as no command at all).
     View(view::ViewArgs),
-    /// Paint the workbench into a picture, without a window.
+    /// Render the workbench to a picture, without a window.
     Screenshot(screenshot::ScreenshotArgs),
     /// Render an experiment to a picture, and its timings to JSON.
     Render(render::RenderArgs),
@@ -98,7 +98,7 @@ enum Command {
     /// Print the error that voxels, cones and filtering each add to an experiment.
     #[command(alias = "split")]
     Ablate(ablate::AblateArgs),
-    /// Compare the voxels of an experiment with what its triangles exactly overlap.
+    /// Compare an experiment's voxels with the exact overlap of its triangles.
     Voxels(voxels::VoxelsArgs),
     /// Print the passes of a graph that run, with their shader files and results.
     Graph(graph::GraphArgs),

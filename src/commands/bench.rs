@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 /// Arguments of `bench`.
 #[derive(Debug, Args)]
 pub struct BenchArgs {
-    /// Experiment files. With --against only these of the record, all when none is given.
+    /// Experiment files. With --against: only these experiments of the record; all when absent.
     #[arg(required_unless_present = "against")]
     experiments: Vec<PathBuf>,
     /// Scene to use: a built-in name, a scene file (.ron) or a model.
@@ -56,10 +56,10 @@ pub struct BenchArgs {
     /// slower.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "sizes", "set", "axis", "record"])]
     against: Option<PathBuf>,
-    /// How much slower a stage may be, as a part of the recorded time.
+    /// Accepted slowdown of a stage, as a fraction of its recorded time.
     #[arg(long, default_value_t = 0.1, requires = "against")]
     tolerance: f64,
-    /// Where bench.json, bench.csv and the charts go; captures/bench/NAME when absent.
+    /// Output folder of bench.json, bench.csv and the charts; captures/bench/NAME when absent.
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -90,7 +90,7 @@ pub fn run(args: &BenchArgs) -> Result<(), LabError> {
 fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
     let (rounds, frames) = counts(args, ROUNDS, FRAMES)?;
     let sweep = sweep_of(args, frames)?;
-    let (home, mut bar) = (Workspace::find()?, bar("turns "));
+    let (home, mut bar) = (Workspace::find()?, bar("measurements "));
     let open = || Lab::open(home.clone(), args.device.options());
     let mut runner = Runner::open(&open, &super::open_scene, &mut bar)?;
     let record = args
@@ -130,7 +130,7 @@ fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
 
 /// Measures the configurations of a record of this device.
 fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
-    let (home, mut bar) = (Workspace::find()?, bar("turns "));
+    let (home, mut bar) = (Workspace::find()?, bar("measurements "));
     let open = || Lab::open(home.clone(), args.device.options());
     let mut runner = Runner::open(&open, &super::open_scene, &mut bar)?;
     let device = DeviceStats::of(&runner.lab.gpu.info);
@@ -231,7 +231,7 @@ fn verdict(tolerance: f64, broken: usize, compared: &[Compared]) -> Result<(), L
     let mut wrong: Vec<String> = Vec::new();
     if broken > 0 {
         wrong.push(format!(
-            "{broken} configurations cannot be measured again: record them anew"
+            "{broken} configurations cannot be measured again: record new times"
         ));
     }
     let slower = slower(compared);

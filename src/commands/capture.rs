@@ -28,7 +28,7 @@ pub struct CaptureArgs {
     /// Time step between frames, s.
     #[arg(long, default_value_t = 0.0)]
     step: f64,
-    /// Also save the picture with GPU times on it, of stages or of all passes.
+    /// Also save the picture with GPU times drawn on it: of stages, or of all passes.
     #[arg(long, value_enum, value_name = "ROWS")]
     timers: Option<Rows>,
     #[command(flatten)]

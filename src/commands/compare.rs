@@ -22,16 +22,17 @@ pub struct CompareArgs {
     /// A picture (.exr, .hdr, .png), an experiment (.ron), which is rendered, or the folder of a
     /// capture.
     a: PathBuf,
-    /// Another; the reference of A when there is no other reference.
+    /// Second input. Without --reference, and if A has no cached reference, it is the reference of
+    /// A.
     b: Option<PathBuf>,
-    /// What both are compared with: a picture, an experiment, a capture, `auto` for the cached
-    /// reference of A where A is an experiment and has one, or `none`.
+    /// Reference of both: a picture, an experiment, a capture, `auto` for the cached reference of A
+    /// if A is an experiment and has one, or `none`.
     #[arg(long, default_value = "auto")]
     reference: PathBuf,
     /// Use the cached reference with this number of bounces; an error if there is none.
     #[arg(long)]
     bounces: Option<u32>,
-    /// Compare only this part (repeatable).
+    /// Compare only this light component (repeatable).
     #[arg(long)]
     part: Vec<String>,
     /// Score the white pixels of this mask separately (repeatable).
@@ -41,7 +42,7 @@ pub struct CompareArgs {
     /// needs to converge.
     #[arg(long)]
     frames: Option<usize>,
-    /// Write everything to this JSON file.
+    /// Write all scores to this JSON file.
     #[arg(long)]
     json: Option<PathBuf>,
     /// Write maps of the error to this folder, PNG and EXR.

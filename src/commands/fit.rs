@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 pub struct FitArgs {
     #[command(flatten)]
     experiment: ExperimentArgs,
-    /// The least time with at most this error.
+    /// Find the least GPU time with at most this error.
     #[arg(
         long,
         value_name = "ERROR",
@@ -30,36 +30,36 @@ pub struct FitArgs {
         conflicts_with = "max_ms"
     )]
     max_error: Option<f64>,
-    /// The least error in at most this GPU time, ms.
+    /// Find the least error within this GPU time, ms.
     #[arg(long, value_name = "MS")]
     max_ms: Option<f64>,
-    /// How the error is measured.
+    /// Error metric.
     #[arg(long, default_value = RELMSE, value_parser = super::metric_of(Metric::ranking()))]
     metric: &'static Metric,
-    /// Part of the light that is compared.
+    /// Light component to compare.
     #[arg(long, default_value = "total")]
     part: String,
-    /// Vary this parameter over these values, neighbours similar (repeatable). Default: the graph's
-    /// own list.
+    /// Vary this parameter over these values, with similar values next to each other (repeatable).
+    /// Default: the graph's own list.
     #[arg(long, value_name = "NAME=VALUE,VALUE")]
     vary: Vec<String>,
     /// Maximum number of settings.
     #[arg(long, default_value_t = 400)]
     evaluations: usize,
-    /// Frames that are timed for each setting.
+    /// Timed frames of each setting.
     #[arg(long, default_value_t = 9)]
     frames: usize,
     /// Warm-up frames before them (extended to 100 ms on GPUs).
     #[arg(long, default_value_t = 3)]
     warmup: usize,
-    /// Samples of every pixel of the reference, if more are needed than are there.
+    /// Samples per pixel of the reference, if the cached one has fewer.
     #[arg(long, default_value_t = 1024)]
     spp: u64,
-    /// Turns of the reference's paths.
+    /// Bounces of the reference.
     #[arg(long, default_value_t = ALL_BOUNCES)]
     bounces: u32,
-    /// The experiment to write; captures/fit/NAME.ron when absent. A folder next to it has all
-    /// trials as points of a sweep, so that a stopped search can be continued.
+    /// Experiment file to write; captures/fit/NAME.ron when absent. A folder next to it stores all
+    /// trials as points of a sweep, so that a cancelled search can be resumed.
     #[arg(short, long)]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -141,7 +141,7 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
     say!("{}", summary.join("\n"));
     say!("wrote {}", super::shown(&output).display());
     say!(
-        "what was tried: conelab report {}",
+        "all trials: conelab report {}",
         super::shown(&folder).display()
     );
     match found.trial.bounded <= goal.bound() {

@@ -29,7 +29,7 @@ pub struct GraphArgs {
     /// Set a parameter (repeatable).
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<String>,
-    /// Resources that are wanted besides the picture.
+    /// Further resources to compute next to the picture.
     #[arg(long, value_name = "NAME")]
     want: Vec<String>,
     /// Print the parameters with their ranges and help, and the named values as set.
@@ -39,7 +39,7 @@ pub struct GraphArgs {
     /// not run.
     #[arg(long)]
     barriers: bool,
-    /// Print a Graphviz picture.
+    /// Print the graph in Graphviz format.
     #[arg(long)]
     dot: bool,
     /// Write parameters, passes, textures and buffers to this JSON file; `-`: to standard output.

@@ -29,8 +29,7 @@ pub struct RenderArgs {
     /// converge.
     #[arg(long)]
     warmup: Option<usize>,
-    /// Whether a frame runs all passes, or only those with changed inputs. Pictures are
-    /// bit-identical.
+    /// Run all passes in each frame, or only those with changed inputs. Pictures are bit-identical.
     #[arg(long, value_enum, default_value_t)]
     execution: Execution,
     /// Move the camera along this path (configs/paths) by each frame's time.
@@ -42,17 +41,16 @@ pub struct RenderArgs {
     /// Write this texture instead of the picture.
     #[arg(long, value_name = "NAME[:MIP[:LAYER]]")]
     resource: Option<String>,
-    /// Reorder the scene's triangles by this seed: results must not depend on the order.
+    /// Shuffle the scene's triangles with this seed. Results must not depend on their order.
     #[arg(long, value_name = "SEED")]
     shuffle: Option<u64>,
     /// Output file, .png or .exr: the last frame.
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// Draw the GPU's times onto the pictures (.png): of the graph's stages, or of every pass.
+    /// Draw GPU times onto the pictures (.png): of stages, or of every pass.
     #[arg(long, value_enum, value_name = "ROWS")]
     timers: Option<Rows>,
-    /// Write timings and settings to this JSON file; `-`: to standard output, and nothing else
-    /// there.
+    /// Write timings and settings to this JSON file; `-` prints only JSON to standard output.
     #[arg(long)]
     json: Option<PathBuf>,
     #[command(flatten)]

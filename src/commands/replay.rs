@@ -11,7 +11,7 @@ use std::path::PathBuf;
 pub struct ReplayArgs {
     /// Folder of a capture, for example captures/default.
     capture: PathBuf,
-    /// Refuse captures of more frames than this; a stranger's capture may ask for a million.
+    /// Refuse captures with more frames than this. A capture from elsewhere may ask for a million.
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     max_frames: usize,
     /// Write the new pictures to this folder.

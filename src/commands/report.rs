@@ -10,13 +10,13 @@ use std::path::PathBuf;
 /// Arguments of `report`.
 #[derive(Debug, Args)]
 pub struct ReportArgs {
-    /// Folders of sweeps: shards of one, or several to be looked at side by side.
+    /// Folders of sweeps: shards of one sweep, or several sweeps to compare.
     #[arg(required = true)]
     folders: Vec<PathBuf>,
-    /// Where the page, the charts and the table go; `report` in the first folder when absent.
+    /// Output folder of page, charts and table; `report` in the first folder when absent.
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
-    /// Errors that are charted.
+    /// Error metrics to chart.
     #[arg(long, value_delimiter = ',', default_values = [RELMSE, "hdr_flip"], value_parser = super::metric_of(METRICS.iter()))]
     metric: Vec<&'static Metric>,
 }

@@ -14,7 +14,7 @@ pub struct SaveArgs {
     /// Name of the new experiment: configs/NAME.ron is written.
     #[arg(long)]
     name: String,
-    /// Replace the experiment of that name, keeping its comments.
+    /// Overwrite the experiment of that name. Its comments are kept.
     #[arg(long)]
     overwrite: bool,
 }

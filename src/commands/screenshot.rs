@@ -32,7 +32,8 @@ pub struct ScreenshotArgs {
     /// Write the texts of the picture to this file (JSON): size in points, colour, place in pixels.
     #[arg(long, value_name = "FILE")]
     texts: Option<PathBuf>,
-    /// Click on the widget with this label, or at X,Y (repeatable).
+    /// Click on the widget with this label, or at X,Y (repeatable). Hidden widgets are scrolled
+    /// into view first.
     #[arg(long, value_name = "LABEL")]
     click: Vec<String>,
     /// Measure this number of frames of the interface and print their times.
@@ -42,12 +43,12 @@ pub struct ScreenshotArgs {
     /// keep rendering (`--click continuous`).
     #[arg(long, value_name = "PICTURES", default_value_t = 0)]
     pace: usize,
-    /// Milliseconds between the interface's frames while its pace is measured, as a screen has it;
-    /// as soon as there is a new picture when absent.
+    /// Milliseconds between frames of the interface while its pace is measured, like the refresh of
+    /// a screen. When absent: a frame for each new picture.
     #[arg(long, value_name = "MS", requires = "pace")]
     every: Option<f64>,
-    /// Measure how long a saved edit of this file takes until its picture is painted; the file ends
-    /// as it was.
+    /// Measure the time from a saved edit of this file to its painted picture. The file is restored
+    /// afterwards.
     #[arg(long, value_name = "FILE", requires_all = ["from", "to"])]
     edit: Option<PathBuf>,
     /// A text that occurs once in the edited file.
@@ -59,7 +60,7 @@ pub struct ScreenshotArgs {
     /// Saves to measure.
     #[arg(long, default_value_t = 16)]
     times: usize,
-    /// Write what happens to this file, one JSON object a line.
+    /// Write events to this file, one JSON object per line.
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
     /// Seconds to wait for the picture after each click, and for its convergence at the end.

@@ -18,7 +18,7 @@ pub struct ViewArgs {
     experiment: Option<PathBuf>,
     #[command(flatten)]
     changes: Changes,
-    /// Whether a frame runs all passes, or only those with changed inputs.
+    /// Run all passes in each frame, or only those with changed inputs.
     #[arg(long, value_enum, default_value_t)]
     execution: Execution,
     /// Size of the window. Default: the last session's, then 85 % of the monitor's width and height.
@@ -27,7 +27,7 @@ pub struct ViewArgs {
     /// The device that paints the window, if it is not the one that renders.
     #[arg(long, value_name = "DEVICE")]
     window_device: Option<String>,
-    /// Write what happens to this file, one JSON object a line, for scripts.
+    /// Write events to this file, one JSON object per line, for scripts.
     #[arg(long, value_name = "FILE")]
     events: Option<PathBuf>,
     #[command(flatten)]

@@ -19,14 +19,14 @@ mod table;
 pub struct VoxelsArgs {
     #[command(flatten)]
     experiment: ExperimentArgs,
-    /// Every way of making voxels that the graph declares, not only the experiment's own.
+    /// Compare all voxelizers that the graph declares, not only the experiment's own.
     #[arg(long)]
     all: bool,
-    /// Write the figures to this JSON file.
+    /// Write the numbers to this JSON file.
     #[arg(long)]
     json: Option<PathBuf>,
-    /// Write cubes to this folder, for each mode a picture and a model (.glb): holes red, extras
-    /// blue, right ones grey.
+    /// Write cubes to this folder: a picture and a model (.glb) for each mode. Missing voxels are
+    /// red, extra ones blue, correct ones grey.
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
     #[command(flatten)]

@@ -153,7 +153,10 @@ impl Tracer {
             // If a block takes long, all earlier ones have been saved.
             if stop && all_kept {
                 let before = store::read(&folder, traced.size, graph)?;
-                let why = format!("stopped before the first {} samples", store::BLOCK);
+                let why = format!(
+                    "cancelled before the first {} samples; nothing was saved",
+                    store::BLOCK
+                );
                 sums = before.ok_or(LabError::Request(why))?;
                 break;
             }
