@@ -908,7 +908,7 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     driver.texts_until("what is empty", |texts| {
         texts
             .iter()
-            .any(|t| t.starts_with("sideRadiance is zeros now: "))
+            .any(|t| t.starts_with("sideRadiance is zero now; "))
     });
     let mark = driver.now();
     driver.click("Button", "all passes on");

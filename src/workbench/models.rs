@@ -69,12 +69,13 @@ impl Models {
                             chosen = Some(about);
                         }
                         ui.weak(format!("{:.1} MB", *bytes as f64 / 1e6))
-                            .on_hover_text("The file alone, without its pictures");
+                            .on_hover_text("Size of the file without its textures");
                     });
                 }
             });
         }
-        let about = "A scene, a model or an experiment; they can be dropped too";
+        let about =
+            "Opens a scene, a model or an experiment. Files can also be dropped on the window";
         if ui.button("open file...").on_hover_text(about).clicked() {
             self.ask();
             ui.close();

@@ -187,7 +187,7 @@ impl Workbench {
         }
         if let Some(why) = failed {
             // Once: a folder that cannot be written to stays so.
-            self.messages.status = format!("the session is not kept: {why}");
+            self.messages.status = format!("the session cannot be saved: {why}");
             self.session.folder = None;
         }
     }

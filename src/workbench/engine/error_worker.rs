@@ -231,7 +231,7 @@ fn light_of(request: ErrorRequest, part: &str) -> Result<Linear, LabError> {
     let mut session: Session = lab.build(&experiment, &loaded, lit, vec![texture], Some(&reuse))?;
     if lights.is_some_and(|lights| !lights.light(&mut session)) {
         return Err(LabError::Request(
-            "the light changed more than a session can follow".into(),
+            "the lights changed too much to update the session".into(),
         ));
     }
     session.run(frames)?;

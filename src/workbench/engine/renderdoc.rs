@@ -15,7 +15,7 @@ pub fn begin() -> Result<Capture, String> {
     // Loading its library late would capture nothing, so that is not tried.
     if !std::fs::read_to_string("/proc/self/maps").is_ok_and(|maps| maps.contains("librenderdoc")) {
         return Err(
-            "RenderDoc is not there: start conelab from it, or with `renderdoccmd capture conelab`"
+            "RenderDoc is not attached: start conelab from it, or with `renderdoccmd capture conelab`"
                 .into(),
         );
     }
@@ -27,7 +27,7 @@ pub fn begin() -> Result<Capture, String> {
 /// Says that there is none.
 #[cfg(not(target_os = "linux"))]
 pub fn begin() -> Result<Capture, String> {
-    Err("frames are captured with RenderDoc on Linux alone".into())
+    Err("RenderDoc captures frames only on Linux".into())
 }
 
 /// Ends it and says where it is.

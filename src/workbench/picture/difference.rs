@@ -49,7 +49,8 @@ impl Workbench {
     /// Writes the shown comparison pixel for pixel: the map, or A and B as they are combined.
     pub(crate) fn save_comparison(&mut self) {
         let (Some(a), Some(b)) = (shown(&self.sides[0]), shown(&self.sides[1])) else {
-            self.messages.status = "the pictures move: they are saved when they rest".into();
+            self.messages.status =
+                "the pictures are still changing: save them once they have converged".into();
             return;
         };
         let map = self
@@ -60,7 +61,7 @@ impl Workbench {
             .map(|(_, map)| map);
         let picture = match (self.view.mode, map) {
             (Mode::Difference | Mode::Perceived, None) => {
-                self.messages.status = "the comparison is still being worked out".into();
+                self.messages.status = "the comparison is still being computed".into();
                 return;
             }
             (_, Some(map)) => Shown {
@@ -97,9 +98,9 @@ impl Workbench {
             .filter(|(mode, _)| *mode == self.view.mode)?;
         let share = 100.0 * map.differing as f64 / f64::from((map.size[0] * map.size[1]).max(1));
         Some(match mode {
-            Mode::Perceived => format!("mean FLIP {:.4}, largest {:.3}", map.mean, map.max),
+            Mode::Perceived => format!("mean FLIP {:.4}, max {:.3}", map.mean, map.max),
             _ => format!(
-                "mean {:.3}/255, largest {}, {share:.1} % of pixels",
+                "mean {:.2}, max {} (of 255), {share:.1} % of pixels differ",
                 map.mean, map.max
             ),
         })

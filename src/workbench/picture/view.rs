@@ -98,7 +98,7 @@ impl Workbench {
             }
             _ => {}
         }
-        let about = "The pictures as they are compared here, into captures/";
+        let about = "Saves the compared pictures in captures/";
         if ui
             .small_button("save picture")
             .on_hover_text(about)

@@ -31,10 +31,11 @@ impl Bookmarks {
         let files = known.map_or_else(|| ron_files(&folder), |k| k.1);
         if !files.is_empty() {
             ui.horizontal_wrapped(|ui| {
-                ui.label("kept:");
+                ui.label("Bookmarks:");
                 for file in &files {
                     let button = ui.small_button(short(&file.to_string_lossy()));
-                    let button = button.on_hover_text("Click: go there. Right click: remove");
+                    let button =
+                        button.on_hover_text("Click: use this camera. Right click: remove");
                     if button.clicked() {
                         asked = Some(Asked::Go(file.clone()));
                     }
@@ -52,7 +53,7 @@ impl Bookmarks {
             let enter = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             let is_named = !self.name.trim().is_empty();
             let button = ui.add_enabled(is_named, egui::Button::new("add bookmark").small());
-            let button = button.on_hover_text("Keeps this camera in captures/cameras");
+            let button = button.on_hover_text("Saves this camera in captures/cameras");
             if button.clicked() || enter && is_named {
                 asked = Some(Asked::Keep);
             }
@@ -73,13 +74,13 @@ impl Workbench {
             Some(Asked::Remove(file)) => {
                 bookmarks.said = match std::fs::remove_file(&file) {
                     Ok(()) => String::new(),
-                    Err(e) => format!("'{}' stays: {e}", file.display()),
+                    Err(e) => format!("cannot remove '{}': {e}", file.display()),
                 };
                 bookmarks.known = None;
             }
             Some(Asked::Keep) => {
                 let said = match self.keep_camera(&folder) {
-                    Ok(name) => format!("kept as {name}"),
+                    Ok(name) => format!("saved as {name}"),
                     Err(e) => e.to_string(),
                 };
                 let bookmarks = &mut self.tabs.surroundings.bookmarks;

@@ -164,8 +164,8 @@ impl Workbench {
     }
 
     fn capture_rows(&mut self, ui: &mut Ui) {
-        let about = "Renders afresh and keeps pictures, sources, settings and times in \
-                     captures/NAME (F12)";
+        let about =
+            "Renders again and saves pictures, sources, settings and times in captures/NAME (F12)";
         ui.horizontal(|ui| {
             let name = &mut self.tabs.gallery.capture_name;
             let field = egui::TextEdit::singleline(name).hint_text(&self.experiment.name);
@@ -326,11 +326,11 @@ impl Workbench {
                 m.when, m.device, m.driver, m.version
             ));
         ui.horizontal(|ui| {
-            let about = "Its settings, with the shaders as they are now";
+            let about = "Loads its settings. Shaders stay as they are now";
             if small_button(ui, "load", &format!("load {name}"), about) {
                 self.load_capture(summary, &m.graph);
             }
-            let about = "Render it again from its own sources and compare";
+            let about = "Renders it again from its own sources and compares every texel";
             if small_button(ui, "replay", &format!("replay {name}"), about) {
                 self.replay(&summary.folder);
             }

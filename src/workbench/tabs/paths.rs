@@ -218,7 +218,7 @@ impl Workbench {
         ui.horizontal(|ui| {
             let add = ui
                 .button("add key")
-                .on_hover_text("The camera as it stands now, a second after the last key");
+                .on_hover_text("Adds the current camera one second after the last key");
             if let Some(camera) = self.desired.camera.as_ref().filter(|_| add.clicked()) {
                 let time = paths.path.keys.last().map_or(0.0, |k| k.time + 1.0);
                 let key = Key::new(time, &PlacedCamera::from(camera));

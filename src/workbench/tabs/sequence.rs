@@ -89,7 +89,7 @@ impl Workbench {
         let (ok, text) = ended.unwrap_or_else(|panic| (false, panic));
         let text = match running.cancelled {
             true => format!(
-                "cancelled after {} of {} frames, which stay in {}",
+                "cancelled after {} of {} frames; they are in {}",
                 running.done, running.frames, sequence.folder
             ),
             false => text,
@@ -213,7 +213,7 @@ impl Sequence {
                 };
                 let cancel = egui::Button::new(name).small();
                 let cancel = ui.add_enabled(!running.cancelled, cancel);
-                if cancel.on_hover_text("Finished frames stay").clicked() {
+                if cancel.on_hover_text("Finished frames are kept").clicked() {
                     running.cancel();
                 }
             });

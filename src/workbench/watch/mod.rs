@@ -79,7 +79,7 @@ impl Watch {
             trouble: notified
                 .as_ref()
                 .err()
-                .map(|e| format!("changes of files are looked for every second: {e}")),
+                .map(|e| format!("files are checked for changes every second: {e}")),
             notified: notified.ok(),
             polled: None,
             send,
@@ -177,7 +177,7 @@ impl Watch {
                 // For example: no more watches are left (fs.inotify.max_user_watches).
                 Err(e) => {
                     self.trouble = Some(format!(
-                        "changes in {} are looked for every second: {e}",
+                        "{} is checked for changes every second: {e}",
                         folder.display()
                     ));
                 }
@@ -188,7 +188,7 @@ impl Watch {
                 Ok(poll) => self.polled = Some(poll),
                 Err(e) => {
                     self.trouble = Some(format!(
-                        "changes in {} are not seen: {e}; F5 reloads",
+                        "changes in {} are not noticed: {e}; F5 reloads",
                         folder.display()
                     ))
                 }

@@ -306,8 +306,8 @@ impl Workbench {
         }
         let Some(result) = result else { return };
         self.tabs.chart.live.said = match &result {
-            Ok(samples) => format!("gathered {samples} samples a pixel"),
-            Err(e) => format!("not gathered: {e}"),
+            Ok(samples) => format!("Reference rendered with {samples} samples per pixel"),
+            Err(e) => format!("No reference: {e}"),
         };
         let why = result.as_ref().err().map(ToString::to_string);
         let fields = json!({ "samples": result.as_ref().ok(), "why": why });

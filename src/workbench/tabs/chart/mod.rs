@@ -116,10 +116,10 @@ impl Workbench {
         if !differences.is_empty() {
             let text = format!("the sweep differs: {}", differences.join(", "));
             ui.weak(text).on_hover_text(
-                "Errors of different pictures cannot be compared. A click on a dot goes there.",
+                "Errors of different pictures cannot be compared. A click on a dot loads its settings.",
             );
         }
-        ui.weak("Lower is better. Red: Pareto front; hollow: within the reference's noise; diamonds: A, B.");
+        ui.weak("Lower is better. Red: Pareto front; hollow: below the reference's noise floor; diamonds: A, B.");
         self.live_rows(ui, &title, &lives);
         let Some(data) = data else { return };
         let scored = drawn.hovered.map(|i| &self.tabs.chart.chosen.dots[i]);

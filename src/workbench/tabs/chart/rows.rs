@@ -26,11 +26,11 @@ impl Workbench {
         let name = ["A", "B"][side];
         let Some(ErrorResult { query, result, .. }) = &state.error else {
             let when = match () {
-                () if self.desired.clock.playing => "is measured when time stands still",
-                () if state.is_asked() => "is being measured",
-                () => "is measured once the picture stands still",
+                () if self.desired.clock.playing => "error updates when the time is paused",
+                () if state.is_asked() => "computing the error",
+                () => "error updates when the picture stops changing",
             };
-            ui.weak(format!("{name}: its error {when}"));
+            ui.weak(format!("{name}: {when}"));
             return false;
         };
         let measured = match result {
@@ -44,29 +44,29 @@ impl Workbench {
         let Some(error) = &measured.error else {
             let (w, h) = measured.subject.size;
             ui.label(format!(
-                "{name}: no reference of this picture yet ({}, {w}x{h}, {bounces})",
+                "{name}: no reference for this picture ({}, {w}x{h}, {bounces})",
                 measured.subject.scene,
             ));
             return true;
         };
         let Some(live) = live else {
-            ui.weak(format!("{name}: the metric is not defined here"));
+            ui.weak(format!("{name}: this metric is undefined for the picture"));
             return false;
         };
         let noisy = match query.metric.within(error.error, error.noise) {
-            true => ", within the reference's noise",
+            true => " (below the reference's noise floor)",
             false => "",
         };
         let old = if live.fresh {
             ""
         } else {
-            " (of the picture before)"
+            " (previous picture)"
         };
         let (ms, value) = (live.ms, error.error);
-        let text = format!("{name}: {ms:.3} ms, {title} {value:.4e}{noisy}{old}");
+        let text = format!("{name}: {ms:.3} ms, {title} {}{noisy}{old}", short(value));
         ui.colored_label(LIVE[side], text).on_hover_text(format!(
-            "Median of {} frames since the last change; `continuous` measures on. Reference: \
-             {bounces}, {} samples a pixel; relMSE of its halves {:.2e}.",
+            "Median of {} frames since the last change. Continuous rendering adds more. Reference: \
+             {bounces}, {} samples per pixel; relMSE between its halves {:.2e}.",
             state.times.len(),
             error.samples,
             error.noise.relmse
@@ -102,7 +102,7 @@ impl Workbench {
                     "cancel"
                 })
                 .small();
-                let about = "Stops; whole blocks of 32 samples are kept";
+                let about = "Stops. Finished blocks of 32 samples are saved";
                 if ui
                     .add_enabled(!gather.cancelled, cancel)
                     .on_hover_text(about)
@@ -118,22 +118,21 @@ impl Workbench {
         }
         let mut start = false;
         ui.horizontal(|ui| {
-            let about = "Traces paths through A's picture until every pixel has so many samples: the truth that \
-                         errors are measured against. It takes minutes on a GPU and much longer without one, goes on \
-                         beside the window, can be cancelled and is kept. The picture keeps its present size from then \
-                         on: a reference fits no other";
+            let about = "Path-traces A's picture to this number of samples per pixel, as the reference for errors. \
+                         It takes minutes on a GPU, much longer on a CPU, runs in the background and is saved. The \
+                         picture keeps its size afterwards, because a reference has one size";
             let text = if missing { "Render reference" } else { "Refine reference" };
             start = ui.button(text).on_hover_text(about).clicked();
             let samples = DragValue::new(&mut self.tabs.chart.live.samples).range(32..=1 << 24).speed(32).suffix(" samples");
             spin(ui, samples, "samples of the reference")
-                .on_hover_text("Samples of every pixel; the error of the reference falls with their square root");
+                .on_hover_text("Samples per pixel. The reference's error falls with their square root");
         });
         if start {
             self.start_gathering();
         }
     }
 
-    /// The size of the picture: that of the sweep, that of the panel, or as it is.
+    /// The size of the picture, and buttons for the sweep's size and the viewport's.
     fn size_row(&mut self, ui: &mut Ui) {
         let (w, h) = self.desired.size;
         let sweeps = self
@@ -145,11 +144,13 @@ impl Workbench {
         ui.horizontal_wrapped(|ui| {
             ui.weak(match self.layout.fixed_size {
                 Some(_) => format!("picture: {w}x{h}"),
-                None => format!("picture: {w}x{h}, as large as the panel; errors are of one size"),
+                None => {
+                    format!("picture: {w}x{h}, fits the viewport; errors compare only at one size")
+                }
             });
             if let Some(size) = sweeps.filter(|s| *s != (w, h))
                 && ui
-                    .small_button(format!("{}x{} as the sweep", size.0, size.1))
+                    .small_button(format!("Use the sweep's {}x{}", size.0, size.1))
                     .clicked()
             {
                 self.layout.fixed_size = Some(size);
@@ -161,11 +162,19 @@ impl Workbench {
     }
 }
 
-/// A time, to be read at a glance.
+/// The remaining time.
 fn minutes(time: Duration) -> String {
     match time.as_secs() {
         s @ 0..90 => format!("{s} s left"),
         s => format!("{} min left", s.div_ceil(60)),
+    }
+}
+
+/// An error in at most four digits after the point.
+fn short(value: f64) -> String {
+    match value {
+        v if v >= 5e-4 => format!("{v:.4}"),
+        v => format!("{v:.2e}"),
     }
 }
 

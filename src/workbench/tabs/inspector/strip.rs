@@ -160,11 +160,12 @@ impl Workbench {
         let strip = &mut inspector.strip;
         let is_new = !strip.pins.iter().any(|other| other.0 == pin.0);
         let button = ui.add_enabled(is_new, egui::Button::new("Pin"));
-        let about = "Keeps a small picture of this level or slice below the texture. A right click unpins it";
+        let about =
+            "Pins a thumbnail of this level or slice below the texture. A right click unpins it";
         if button.on_hover_text(about).clicked() {
             strip.pins.push(pin);
         }
-        let about = "Small pictures of all textures below the texture. All are kept in memory meanwhile, and read every 2 s while the picture changes";
+        let about = "Shows thumbnails of all textures below the texture. They take memory and are read every 2 s while the picture changes";
         ui.toggle_value(&mut strip.lists_all, "All textures")
             .on_hover_text(about);
     }

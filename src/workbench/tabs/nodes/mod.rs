@@ -370,7 +370,7 @@ impl Workbench {
             if ui.button("Compare with/without").on_hover_text(about).clicked() {
                 self.with_and_without(side, name);
             }
-            let about = "Only this pass and those that it needs; Inspect shows its first texture";
+            let about = "Runs only this pass and the passes that it needs. Inspect shows its first texture";
             if ui.button("Isolate").on_hover_text(about).clicked() {
                 self.solo(side, info, name, off);
             }
@@ -456,7 +456,7 @@ fn passes_off(ui: &mut Ui, info: &GraphInfo, off: &mut Vec<String>) {
     let warn = ui.visuals().warn_fg_color;
     ui.colored_label(warn, format!("off: {}", off.join(", ")));
     for (name, readers) in zeros(info) {
-        ui.colored_label(warn, format!("{name} is zeros now: {readers} read it"));
+        ui.colored_label(warn, format!("{name} is zero now; {readers} read it"));
     }
     if ui.button("all passes on").clicked() {
         off.clear();

@@ -166,8 +166,9 @@ impl Workbench {
         });
         ui.horizontal(|ui| {
             let mut fixed = clock.step.is_some();
-            ui.checkbox(&mut fixed, "fixed step")
-                .on_hover_text("The same time from frame to frame, however long it takes");
+            ui.checkbox(&mut fixed, "fixed step").on_hover_text(
+                "Advances the time by this step in every frame, however long a frame takes",
+            );
             clock.step = match (fixed, clock.step) {
                 (true, step) => Some(step.unwrap_or(1.0 / 60.0)),
                 (false, _) => None,

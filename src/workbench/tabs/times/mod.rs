@@ -284,7 +284,7 @@ impl Workbench {
         };
         ui.horizontal_wrapped(|ui| {
             let mut frozen = self.tabs.times.frozen.is_some();
-            let about = "Keep these frames and ignore new ones. The picture goes on";
+            let about = "Keeps these frames and ignores new ones. Rendering continues";
             if ui
                 .toggle_value(&mut frozen, "Freeze")
                 .on_hover_text(about)
@@ -416,7 +416,7 @@ impl Workbench {
             }
         }
         draw(ui, &table.between, Kind::Rest).on_hover_text_at_pointer(
-            "GPU time of the frame that no pass takes. Barriers count to the pass before which they are",
+            "GPU time outside passes. A barrier counts towards the pass after it",
         );
     }
 }
