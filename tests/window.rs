@@ -924,7 +924,7 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     let rough = driver.other_picture(mark, 1, &first);
     assert_ne!(rough, dark);
     driver.texts_until("nothing is empty", |texts| {
-        !texts.iter().any(|t| t.contains("is zeros now"))
+        !texts.iter().any(|t| t.contains("is zero now"))
     });
     driver.click("", "A | B");
     driver.texts_until("A alone", |texts| !texts.iter().any(|t| t == "FLIP error"));
