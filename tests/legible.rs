@@ -71,9 +71,9 @@ fn every_text_of_every_tab_is_legible_in_both_themes() {
     let views: [&[&str]; 6] = [
         &["Scene", "Profiler", "help"],
         &["Graph", "Chart", "Nodes"],
-        &["Inspect", "Motion", "Texture"],
+        &["Inspect", "All textures", "show voxelRadiance"],
         &["Tables", "Save", "timers"],
-        &["Runs"],
+        &["Runs", "Motion"],
         &[
             "Compare",
             "raster | tessellated",

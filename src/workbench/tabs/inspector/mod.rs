@@ -286,7 +286,7 @@ impl Workbench {
                 ui.weak("…");
             }
             large = !dock_shows && ui.button("Show large").clicked();
-            self.strip_buttons(ui);
+            large |= self.strip_buttons(ui);
         });
         if large {
             self.dock.open(Pane::Texture);

@@ -153,8 +153,9 @@ impl Workbench {
         button.on_hover_text(name)
     }
 
-    /// Buttons that pin the shown part of a texture, and list all textures.
-    pub(super) fn strip_buttons(&mut self, ui: &mut Ui) {
+    /// Buttons that pin the shown part of a texture, and list all textures. Returns whether the strip
+    /// is to be seen.
+    pub(super) fn strip_buttons(&mut self, ui: &mut Ui) -> bool {
         let inspector = &mut self.tabs.inspector;
         let pin = (inspector.target.clone(), inspector.tone);
         let strip = &mut inspector.strip;
@@ -162,12 +163,13 @@ impl Workbench {
         let button = ui.add_enabled(is_new, egui::Button::new("Pin"));
         let about =
             "Pins a thumbnail of this level or slice below the texture. A right click unpins it";
-        if button.on_hover_text(about).clicked() {
+        let pinned = button.on_hover_text(about).clicked();
+        if pinned {
             strip.pins.push(pin);
         }
         let about = "Shows thumbnails of all textures below the texture. They take memory and are read every 2 s while the picture changes";
-        ui.toggle_value(&mut strip.lists_all, "All textures")
-            .on_hover_text(about);
+        let all = ui.toggle_value(&mut strip.lists_all, "All textures");
+        pinned || all.on_hover_text(about).clicked() && strip.lists_all
     }
 }
 
