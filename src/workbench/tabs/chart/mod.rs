@@ -119,7 +119,9 @@ impl Workbench {
                 "Errors of different pictures cannot be compared. A click on a dot loads its settings.",
             );
         }
-        ui.weak("Lower is better. Red: Pareto front; hollow: below the reference's noise floor; diamonds: A, B.");
+        ui.weak(
+            "Lower is better. Red: Pareto front; hollow: below the noise floor; diamonds: A, B.",
+        );
         self.live_rows(ui, &title, &lives);
         let Some(data) = data else { return };
         let scored = drawn.hovered.map(|i| &self.tabs.chart.chosen.dots[i]);
