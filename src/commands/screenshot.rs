@@ -177,7 +177,7 @@ fn print_times(shot: &Shot, measured: bool) {
         add("from paint to paint", &pace.paint_ms);
         add("from picture to its paint", &pace.delay_ms);
         add("interface, CPU", &pace.cpu_ms);
-        add("  laid out anew", &pace.layout_ms);
+        add("  new layouts", &pace.layout_ms);
     }
     if let Some(edit) = &shot.edit_ms {
         add("save to pixels", edit);

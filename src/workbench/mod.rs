@@ -403,7 +403,7 @@ impl Workbench {
         self.messages.trouble.as_deref()
     }
 
-    /// Errors of graphs and shaders that keep a side from what was asked of it.
+    /// Errors of both sides in graphs and shaders.
     pub fn errors(&self) -> Vec<Diagnostic> {
         self.sides.iter().flat_map(|s| s.errors.clone()).collect()
     }

@@ -1,4 +1,4 @@
-//! Frames of the interface, for each host: laid out anew, or the last layout with new pictures.
+//! Frames of the interface, for each host: a new layout, or the last one with new pictures.
 
 use crate::vulkan::{Painter, Pixels, VulkanError};
 use crate::workbench::{NewPixels, PICTURES, Workbench};

@@ -80,9 +80,9 @@ pub struct Kept {
     pub delay_ms: Spread,
     /// CPU time of a frame of the interface, ms.
     pub cpu_ms: Spread,
-    /// The same of those that were laid out anew, ms; how many are in `layouts`.
+    /// CPU time of frames with a new layout, ms.
     pub layout_ms: Spread,
-    /// Frames that were laid out anew. The others show new pictures in the last layout.
+    /// Number of frames with a new layout. The others show new pictures in the last one.
     pub layouts: usize,
     /// Main memory that the process held after a tenth of the pictures, and after all; where the
     /// system says.
@@ -424,7 +424,7 @@ impl Host {
         Ok(())
     }
 
-    /// Paints what has come, as the window does; CPU time, ms, and whether it was laid out anew.
+    /// Paints like the window. Returns the CPU time, ms, and whether the layout is new.
     fn repaint(&mut self) -> Result<(f64, bool), LabError> {
         self.workbench.poll_events();
         let begun = Instant::now();
