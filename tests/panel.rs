@@ -672,3 +672,32 @@ fn the_inspected_mip_is_that_of_the_voxel_view() {
     assert_eq!(driver.resting(0), finest);
     driver.close();
 }
+
+/// A driven window wants each picture in main memory, where comparisons are made; a window of its own does not.
+#[test]
+fn pictures_at_rest_are_compared() {
+    let home = common::home();
+    let (shot, list) = (home.path().join("shot.png"), home.path().join("texts.json"));
+    let mut command = common::conelab(home.path());
+    // Settings without accumulation: both pictures rest before the click on the error.
+    command.args([
+        "screenshot",
+        "configs/thesis.ron",
+        "--scene",
+        "cornell",
+        "--size",
+        "96x72",
+    ]);
+    command.args([
+        "--set",
+        "voxel_dim=32",
+        "--set",
+        "shadow_dim=256",
+        "--window",
+        "1000x700",
+    ]);
+    command.args(["--click", "A | B", "--click", "FLIP error", "--texts"]);
+    common::succeeds(command.arg(&list).arg("-o").arg(&shot));
+    let texts = std::fs::read_to_string(&list).unwrap();
+    assert!(texts.contains("mean FLIP 0.0000"), "{texts}");
+}

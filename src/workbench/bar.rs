@@ -381,9 +381,8 @@ impl Workbench {
             let Some(picture) = &self.sides[side].picture else {
                 continue;
             };
-            if let Some((metric, error)) = self.tabs.chart.known_error(side, self.sent.number) {
-                let text = format!("{metric} {error:.3e}");
-                ui.label(text).on_hover_text("Error against the reference");
+            if let Some(error) = self.tabs.chart.known_error(side, self.sent.number) {
+                ui.label(error).on_hover_text("Error against the reference");
             }
             let time = format!("{:.2} ms", picture.times.gpu_ms);
             ui.label(time)

@@ -77,7 +77,10 @@ impl Run<'_> {
         if side.key.as_ref() == Some(&key) {
             // What failed meanwhile is taken back.
             side.failed = None;
-            side.answered = self.number;
+            if std::mem::replace(&mut side.answered, self.number) != self.number {
+                // A request that changes nothing visible is answered by a picture too.
+                self.request_frames_of(number, Need::Frames(1));
+            }
             return Ok(());
         }
         if side.failed.as_ref() == Some(&key) {

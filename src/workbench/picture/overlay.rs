@@ -46,8 +46,8 @@ impl Workbench {
         if self.desired.sides[1].is_some() {
             timers.title[0].insert_str(0, ["A: ", "B: "][side.min(1)]);
         }
-        if let Some((metric, error)) = self.tabs.chart.known_error(side, self.sent.number) {
-            timers.title.push(format!("{metric} {error:.3e}"));
+        if let Some(error) = self.tabs.chart.known_error(side, self.sent.number) {
+            timers.title.push(error);
         }
         (timers.total, timers.statistic) = (means.total, "mean");
         timers

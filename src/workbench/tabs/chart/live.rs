@@ -3,6 +3,7 @@
 
 use super::gather::{Gather, Job};
 use super::plot::Live;
+use super::rows::short;
 use crate::campaign::sweep::Subject;
 use crate::results::stats::spread;
 use crate::workbench::Workbench;
@@ -155,14 +156,14 @@ impl super::Chart {
         side.times.push(picture.times.gpu_ms);
     }
 
-    /// Metric and error of a side's picture, if measured; 0 is perfect.
-    pub fn known_error(&self, side: usize, sent: u64) -> Option<(&str, f64)> {
+    /// Metric and error of a side's picture, if measured: `FLIP 0.0310`.
+    pub fn known_error(&self, side: usize, sent: u64) -> Option<String> {
         let measured = self.live.sides[side]
             .error
             .as_ref()
             .filter(|e| e.request >= sent)?;
         let error = measured.result.as_ref().ok()?.error?.error;
-        Some((measured.query.metric.key, error))
+        Some(format!("{} {}", measured.query.metric.title, short(error)))
     }
 
     /// The device was replaced, so requests are sent again.

@@ -171,7 +171,7 @@ fn minutes(time: Duration) -> String {
 }
 
 /// An error in at most four digits after the point.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     match value {
         v if v >= 5e-4 => format!("{v:.4}"),
         v => format!("{v:.2e}"),
