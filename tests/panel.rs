@@ -102,9 +102,14 @@ fn the_panel_begins_with_what_the_graph_pins_and_finds_names_however_they_are_wr
 fn a_scene_that_cannot_be_loaded_leaves_everything_as_it_was() {
     let mut driver = small();
     let first = driver.first_picture();
+    driver.write(
+        "configs/scenes/broken.ron",
+        "(models: [(file: \"broken.obj\")])",
+    );
+    driver.write("configs/scenes/broken.obj", "f 1 2 3\n");
     let mark = driver.now();
     driver.click("", "scene: cornell");
-    driver.click("", "sponza");
+    driver.click("", "broken");
     driver.event(mark, "load failed");
     driver.texts_until("the scene that is shown", |texts| {
         has(texts, "scene: cornell")

@@ -85,7 +85,9 @@ mod tests {
         let mut frame = Frame::default();
         let known = || picture(0, [8, 4]);
         assert_eq!(frame.serves(&[known()]), None);
-        frame.lay_out(&egui::Context::default(), Vec::new(), 1.0);
+        let context = egui::Context::default();
+        let _ = context.run_ui(egui::RawInput::default(), |_| {});
+        frame.lay_out(&context, Vec::new(), 1.0);
         frame.sizes[0] = Some([8, 4]);
         assert!(frame.serves(&[known()]).is_some());
         assert_eq!(frame.serves(&[]), None, "nothing new: an input, or time");
