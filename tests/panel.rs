@@ -678,31 +678,31 @@ fn the_inspected_mip_is_that_of_the_voxel_view() {
     driver.close();
 }
 
-/// A driven window wants each picture in main memory, where comparisons are made; a window of its own does not.
-#[test]
-fn pictures_at_rest_are_compared() {
+/// The texts of a screenshot after clicks, in JSON. Settings without accumulation: pictures rest between the clicks.
+fn texts_after(clicks: &[&str]) -> String {
     let home = common::home();
     let (shot, list) = (home.path().join("shot.png"), home.path().join("texts.json"));
     let mut command = common::conelab(home.path());
-    // Settings without accumulation: both pictures rest before the click on the error.
-    command.args([
-        "screenshot",
-        "configs/thesis.ron",
-        "--scene",
-        "cornell",
-        "--size",
-        "96x72",
-    ]);
-    command.args([
-        "--set",
-        "voxel_dim=32",
-        "--set",
-        "shadow_dim=256",
-        "--window",
-        "1000x700",
-    ]);
-    command.args(["--click", "A | B", "--click", "FLIP error", "--texts"]);
-    common::succeeds(command.arg(&list).arg("-o").arg(&shot));
-    let texts = std::fs::read_to_string(&list).unwrap();
+    command.args(["screenshot", "configs/thesis.ron", "--scene", "cornell"]);
+    command.args(["--size", "96x72", "--window", "1000x700"]);
+    command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256"]);
+    for click in clicks {
+        command.args(["--click", click]);
+    }
+    common::succeeds(command.arg("--texts").arg(&list).arg("-o").arg(&shot));
+    std::fs::read_to_string(&list).unwrap()
+}
+
+/// A driven window wants each picture in main memory, where comparisons are made; a window of its own does not.
+#[test]
+fn pictures_at_rest_are_compared() {
+    let texts = texts_after(&["A | B", "FLIP error"]);
     assert!(texts.contains("mean FLIP 0.0000"), "{texts}");
+}
+
+/// A screenshot shows what its clicks lead to: the capture is in the list, and its replay has an answer.
+#[test]
+fn a_capture_is_replayed_in_a_screenshot() {
+    let texts = texts_after(&["capture now", "Save", "replay"]);
+    assert!(texts.contains("identical"), "{texts}");
 }

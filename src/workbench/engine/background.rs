@@ -56,7 +56,8 @@ impl Run<'_> {
     ) {
         let (Some(desired), Some(scene)) = (self.desired.sides[number].clone(), self.scene.clone())
         else {
-            return;
+            let why = "there is no picture yet".to_string();
+            return self.out.send(Report::Captured(Err(why)));
         };
         let graph = self.sides[number].loaded.as_ref().map(|l| &*l.graph);
         let desired = save::without_cursors(&desired, graph);

@@ -24,6 +24,8 @@ pub struct Gallery {
     /// How saving and capturing ended: whether all is well, and in words.
     saved: Option<(bool, String)>,
     captured: Option<(bool, String)>,
+    /// Whether the engine is making a capture.
+    capturing: bool,
     capture_name: String,
     resources: Vec<String>,
     captures: Option<Vec<Summary>>,
@@ -43,9 +45,17 @@ impl Tab for Gallery {
     }
 
     fn report(workbench: &mut Workbench, report: &Report) {
-        if let Report::Captured(result) = report {
-            workbench.captured(result);
+        match report {
+            Report::Captured(result) => workbench.captured(result),
+            // A new device has no capture in work.
+            Report::Device(_) => workbench.tabs.gallery.capturing = false,
+            _ => {}
         }
+    }
+
+    fn awaits(workbench: &Workbench) -> bool {
+        let gallery = &workbench.tabs.gallery;
+        gallery.capturing || gallery.replays.is_working()
     }
 }
 
@@ -54,14 +64,18 @@ const THUMBNAIL: u32 = 160;
 
 impl Workbench {
     fn gallery_tab(&mut self, ui: &mut Ui) {
-        ui.strong("Experiment");
-        self.save_row(ui);
-        ui.separator();
-        ui.strong("Capture");
-        self.capture_rows(ui);
-        ui.separator();
-        ui.strong("Captures");
-        self.gallery_rows(ui);
+        // One area for all: in a low pane a list of its own would have no height left.
+        let area = egui::ScrollArea::vertical().auto_shrink(false);
+        area.show(ui, |ui| {
+            ui.strong("Experiment");
+            self.save_row(ui);
+            ui.separator();
+            ui.strong("Capture");
+            self.capture_rows(ui);
+            ui.separator();
+            ui.strong("Captures");
+            self.gallery_rows(ui);
+        });
     }
 
     fn save_row(&mut self, ui: &mut Ui) {
@@ -214,6 +228,7 @@ impl Workbench {
                 if is_named {
                     self.tabs.gallery.capture_name.clone_from(&name);
                 }
+                self.tabs.gallery.capturing = true;
                 let resources = self.tabs.gallery.resources.clone();
                 let (side, timers) = (self.panel.side, self.view.timers);
                 self.engine
@@ -230,9 +245,13 @@ impl Workbench {
 
     fn captured(&mut self, result: &Result<PathBuf, String>) {
         let (ok, text) = match result {
-            Ok(path) => (true, format!("captured {}", path.display())),
+            Ok(path) => {
+                let path = path.strip_prefix(&self.setup.home.root).unwrap_or(path);
+                (true, format!("captured {}", path.display()))
+            }
             Err(why) => (false, format!("not captured: {why}")),
         };
+        self.tabs.gallery.capturing = false;
         if ok {
             self.tabs.gallery.captures = None;
         }
@@ -269,17 +288,13 @@ impl Workbench {
         if !gallery.replayed.is_empty() {
             ui.label(&gallery.replayed);
         }
-        egui::ScrollArea::vertical()
-            .auto_shrink(false)
-            .show(ui, |ui| {
-                for summary in captures {
-                    ui.horizontal(|ui| {
-                        self.thumbnail(ui, &summary);
-                        ui.vertical(|ui| self.capture_row(ui, &summary));
-                    });
-                    ui.separator();
-                }
+        for summary in captures {
+            ui.horizontal(|ui| {
+                self.thumbnail(ui, &summary);
+                ui.vertical(|ui| self.capture_row(ui, &summary));
             });
+            ui.separator();
+        }
     }
 
     fn thumbnail(&mut self, ui: &mut Ui, summary: &Summary) {
