@@ -706,3 +706,10 @@ fn a_capture_is_replayed_in_a_screenshot() {
     let texts = texts_after(&["capture now", "Save", "replay"]);
     assert!(texts.contains("identical"), "{texts}");
 }
+
+/// The pane *Texture* needs no visit of *Inspect* before.
+#[test]
+fn the_texture_pane_begins_with_the_picture() {
+    let texts = texts_after(&["Texture"]);
+    assert!(texts.contains("A radiance  mip 0"), "{texts}");
+}

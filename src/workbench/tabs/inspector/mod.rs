@@ -250,15 +250,24 @@ impl Workbench {
             });
     }
 
+    /// Chooses the texture of the picture if the graph does not have the chosen one, or none was.
+    /// None if it has no textures.
+    pub(super) fn choose_first(&mut self, info: &GraphInfo) -> Option<()> {
+        let mut names = info.graph.textures.iter().map(|t| t.0.as_str());
+        let chosen = &self.tabs.inspector.target;
+        if !names.clone().any(|name| name == chosen.texture) {
+            let preferred = info.graph.hdr.as_deref().or(info.graph.output.as_deref());
+            let name = preferred.or(names.next())?.to_string();
+            let side = chosen.side;
+            self.tabs.inspector.open(side, name);
+        }
+        Some(())
+    }
+
     /// Texture, mip, layer or slice.
     fn choose(&mut self, ui: &mut Ui, info: &GraphInfo) -> Option<TexturePlan> {
         let names: Vec<&str> = info.graph.textures.iter().map(|t| t.0.as_str()).collect();
-        if !names.contains(&self.tabs.inspector.target.texture.as_str()) {
-            let preferred = info.graph.hdr.as_deref().or(info.graph.output.as_deref());
-            let name = preferred.or(names.first().copied())?.to_string();
-            let inspector = &mut self.tabs.inspector;
-            inspector.open(inspector.target.side, name);
-        }
+        self.choose_first(info)?;
         self.texture_menu(ui, info, &names);
         let (dock_shows, mut large) = (self.dock.shows(&Pane::Texture), false);
         let inspector = &mut self.tabs.inspector;

@@ -73,6 +73,9 @@ impl Workbench {
         let side = self.tabs.inspector.target.side.min(1);
         let mut size = ui.available_size();
         let info = self.sides[side].info.clone();
+        if let Some(info) = &info {
+            self.choose_first(info);
+        }
         let strip = info.filter(|_| self.tabs.inspector.strip.is_shown());
         if strip.is_some() {
             size.y -= strip::HEIGHT;
