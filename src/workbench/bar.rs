@@ -298,7 +298,7 @@ impl Workbench {
         } else {
             short(&self.desired.scene)
         };
-        ui.menu_button(format!("scene: {name}"), |ui| {
+        let menu = ui.menu_button(format!("scene: {name}"), |ui| {
             for (name, about) in crate::scene::builtin::list() {
                 if ui.button(name).on_hover_text(about).clicked() {
                     chosen = Some(name.to_string());
@@ -306,15 +306,21 @@ impl Workbench {
                 }
             }
             ui.separator();
-            for path in ron_files(&self.setup.home.root.join("configs/scenes")) {
-                let missing = missing_model(&path);
+            let folder = self.setup.home.root.join("configs/scenes");
+            let files = self.scene.files.get_or_insert_with(|| {
+                let files = ron_files(&folder).into_iter();
+                files.map(|f| (missing_model(&f), f)).collect()
+            });
+            for (missing, path) in files {
                 let button = egui::Button::new(short(&path.to_string_lossy()));
                 let button = ui.add_enabled(missing.is_none(), button);
                 if button.clicked() {
                     chosen = Some(path.to_string_lossy().into_owned());
                     ui.close();
                 }
-                button.on_disabled_hover_text(missing.unwrap_or_default());
+                if let Some(missing) = missing {
+                    button.on_disabled_hover_text(missing.as_str());
+                }
             }
             ui.separator();
             if let Some(spec) = self.scene.models.menu(ui) {
@@ -322,6 +328,9 @@ impl Workbench {
                 ui.close();
             }
         });
+        if menu.inner.is_none() {
+            self.scene.files = None;
+        }
         if let Some(spec) = chosen {
             self.open_scene(&spec);
         }

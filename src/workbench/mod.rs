@@ -194,6 +194,8 @@ struct OpenScene {
     diagonal: f32,
     /// Name of the scene being loaded, and the completed fraction.
     loading: Option<(String, f32)>,
+    /// Scene files of the open menu, each with the message about its missing model.
+    files: Option<Vec<(Option<String>, PathBuf)>>,
     models: models::Models,
 }
 
@@ -207,6 +209,7 @@ impl OpenScene {
             warned: false,
             diagonal: 1.0,
             loading: None,
+            files: None,
             models: models::Models::new(root),
         }
     }

@@ -307,8 +307,7 @@ impl<'g> Check<'g> {
         false
     }
 
-    /// Checks a parameter that the window sets.
-    /// The name of an `Int` parameter.
+    /// Checks a parameter that selects the mip of a view.
     fn view_mip(&mut self, name: &Loc<String>) {
         let list = self.graph.params.list.iter();
         let integers = list.filter(|p| p.kind == Kind::Int);
@@ -319,6 +318,7 @@ impl<'g> Check<'g> {
         }
     }
 
+    /// Checks a parameter that the window sets.
     fn cursor(&mut self, name: &Loc<String>, what: &str) {
         let params = &self.graph.params;
         match params.param(&name.value) {
