@@ -4,24 +4,33 @@
 #include "surfels/sides.glsl"
 #include "common/ggx.glsl"
 #include "common/pattern.glsl"
+#include "common/random.glsl"
 #include "gather/radiance.glsl"
 #include "gather/emitters.glsl"
 
-// Direction pattern of a cell: one of 64, repeated every 4x4x4 cells.
-uint patternOf(uvec3 cell) {
-    return ((cell.x & 3u | (cell.y & 3u) << 2 | (cell.z & 3u) << 4) * 37u) & 63u;
+// Random shifts of a side's point sequences, so that no wall repeats a few directions.
+struct SideShifts {
+    vec2 directions;
+    float candidate; // choice among emitter candidates
+    vec4 emitters;
+};
+
+SideShifts shiftsOf(ivec3 cell, uint axis, uint side) {
+    Random random = Random(uvec4(packCell(cell), 2u * axis + side, 0u, 0u));
+    vec4 first = next4(random);
+    return SideShifts(first.xy, first.z, next4(random));
 }
 
 // Resampled importance sampling: picks one of CANDIDATES emitter samples by unshadowed
 // contribution. light: contribution of all candidates to the mean radiance over the hemisphere. samples:
 // total number of emitter samples of the side.
-EmitterSample resampleEmitter(vec3 p, vec3 n, uint index, vec4 shift, float samples, out vec3 light) {
-    Reservoir r = Reservoir(fract(shift.x + float(index & 0xffffu) * 0.6180339887), 0.0, 0.0);
+EmitterSample resampleEmitter(vec3 p, vec3 n, uint index, SideShifts shifts, float samples, out vec3 light) {
+    Reservoir r = Reservoir(fract(shifts.candidate + float(index & 0xffffu) * 0.6180339887), 0.0, 0.0);
     EmitterSample best;
     best.cosine = 0.0;
     light = vec3(0.0);
     for (uint k = 0; k < uint(CANDIDATES); k++) {
-        EmitterSample emitter = sampleEmitter(p, r4(index * uint(CANDIDATES) + k, shift));
+        EmitterSample emitter = sampleEmitter(p, r4(index * uint(CANDIDATES) + k, shifts.emitters));
         float cosine = dot(n, emitter.direction) / PI;
         float pdf = samples * emitter.by_area * emitter.distance * emitter.distance;
         if (cosine <= 0.0 || emitter.cosine == 0.0) continue;
@@ -42,7 +51,7 @@ int emitterRays() {
 
 // This thread's share (rays first, first + of, ...) of the mean radiance over the hemisphere. lamp: whether
 // the surface is an emitter.
-vec3 gatherAt(vec3 p, vec3 n, bool lamp, uint pattern, int first, int of) {
+vec3 gatherAt(vec3 p, vec3 n, bool lamp, SideShifts shifts, int first, int of) {
     ConeOrigin o = coneOrigin(p, n, n);
     mat3 frame = frameOf(n);
     vec3 sum = vec3(0.0);
@@ -53,12 +62,12 @@ vec3 gatherAt(vec3 p, vec3 n, bool lamp, uint pattern, int first, int of) {
         RayUse use = WHOLE_RAY;
         vec3 d, light;
         if (i < rays) {
-            d = frame * cosineSample(r2(uint(i) * 64u + pattern));
+            d = frame * cosineSample(r2(uint(i), shifts.directions));
             float density = lamp ? LEAVES_ALL : float(rays) * dot(d, n) / PI;
             if (samples > 0) use = RayUse(1e30, density, candidates, 1e30);
         } else {
-            uint index = uint(i - rays) * 64u + pattern;
-            EmitterSample emitter = resampleEmitter(o.surface, n, index, vec4(0.5), candidates, light);
+            EmitterSample emitter =
+                resampleEmitter(o.surface, n, uint(i - rays), shifts, candidates, light);
             if (emitter.cosine == 0.0 || emitter.distance < self) continue;
             d = emitter.direction;
             use = rayTo(emitter, o.surface);

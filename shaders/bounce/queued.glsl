@@ -32,7 +32,8 @@ vec3 gatheredShare(uint surfel, uint side, int part) {
     ivec3 cell = cellOfSurfel(surfel);
     uint axis = uint(axisOfSurfel(surfel));
     vec3 p = surfelPosition(placed.maps[cascadeOf(cell)], cell, surfelBase(surfel), side, axis);
-    return gatherAt(p, s.normal, emits(surfel, side), patternOf(uvec3(cell)), part, int(BOUNCE_THREADS));
+    SideShifts shifts = shiftsOf(cell, axis, side);
+    return gatherAt(p, s.normal, emits(surfel, side), shifts, part, int(BOUNCE_THREADS));
 }
 
 void main() {
