@@ -226,6 +226,8 @@ fn experiments_are_compared_by_part_with_each_other_or_with_the_cached_reference
     let both = json(&home.path().join("c.json"));
     let total = &both["parts"][0];
     assert!(total["noise"].as_f64().unwrap() > 0.0);
+    let flip_noise = total["flip_noise"].as_f64().unwrap();
+    assert!(flip_noise > 0.0 && flip_noise < 0.1, "{flip_noise}");
     let energy = |i: usize| score(&both, "frame", i)["energy_ratio"].as_f64().unwrap();
     // Voxels as coarse as these are too bright (docs/trials.md).
     assert!((energy(0) - 1.0).abs() < 0.2, "default: {}", energy(0));

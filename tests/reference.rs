@@ -7,6 +7,7 @@ use common::{assert_clean, conelab, experiment, fails, lab, root, scene, succeed
 use conelab::experiment::{CameraChoice, Experiment, PlacedCamera};
 use conelab::lab::{Lab, Workspace};
 use conelab::measure::reference::{Goal, Reference, find, gather};
+use conelab::metrics::{METRICS, scores};
 use conelab::scene::Scene;
 use sha2::{Digest, Sha256};
 use std::ops::ControlFlow;
@@ -380,6 +381,95 @@ fn twice_the_samples_halve_the_relmse() {
             "{part}: slope {slope} of {noise:?}"
         );
     }
+}
+
+/// Gathers to a bound. Returns the reference and the samples and noise of every report.
+fn trace_until(
+    lab: &Lab,
+    (name, experiment): (&str, &Experiment),
+    bound: &str,
+) -> (Reference, Vec<(u64, f64)>) {
+    let mut reports = Vec::new();
+    let goal = Goal::Noise(bound.parse().unwrap());
+    let reference = gather(lab, experiment, &scene(name), 1, goal, &mut |now| {
+        reports.push((now.samples, now.noise.unwrap()));
+        ControlFlow::Continue(())
+    });
+    assert_clean(lab);
+    (reference.unwrap(), reports)
+}
+
+#[test]
+fn the_estimated_noise_is_the_error_against_many_more_samples_and_bounds_are_kept() {
+    // relMSE is decided by few bright pixels.
+    let cases = [
+        ("cornell", "flip", 0.02, 1.25),
+        ("small-quad", "flip", 0.02, 1.25),
+        ("cornell", "relmse", 0.001, 2.0),
+    ];
+    for (name, key, limit, factor) in cases {
+        let home = common::home();
+        let lab = lab(home.path());
+        let (one, other) = (
+            experiment(name, (32, 24), &[]),
+            experiment(name, (32, 24), &[("seed", "2")]),
+        );
+        let (found, reports) = trace_until(&lab, (name, &one), &format!("{key}={limit}"));
+        let samples = 16 * found.samples;
+        let converged = trace(&lab, &other, &scene(name), 1, samples);
+        let [x, r] = [&found, &converged].map(|r| &r.parts["total"]);
+        let metric = METRICS.iter().find(|m| m.key == key).unwrap();
+        let noise = metric.of_noise(x.noise).unwrap();
+        let error = scores(&x.mean, &r.mean).unwrap().get(key);
+        println!(
+            "{name} {key}={limit}: {} samples, estimated {noise:.5}, against {samples} samples {error:.5}",
+            found.samples
+        );
+        assert!(noise <= limit, "{name} {key}: {noise}");
+        assert!(
+            error < factor * noise && error > noise / factor,
+            "{name} {key}: {error}, estimated {noise}"
+        );
+        let (last, before) = reports.split_last().unwrap();
+        assert_eq!(*last, (found.samples, noise));
+        assert!(before.iter().all(|r| r.1 > limit), "{name}: {reports:?}");
+    }
+}
+
+#[test]
+fn a_sharper_bound_continues_from_the_samples_of_a_looser_one() {
+    let (one, two) = (common::home(), common::home());
+    let cornell = experiment("cornell", (24, 18), &[]);
+    let case = ("cornell", &cornell);
+    let (whole, _) = trace_until(&lab(one.path()), case, "flip=0.02");
+    let lab = lab(two.path());
+    let (loose, _) = trace_until(&lab, case, "flip=0.03");
+    let (sharp, reports) = trace_until(&lab, case, "flip=0.02");
+    assert!(
+        loose.samples < sharp.samples,
+        "{} and {}",
+        loose.samples,
+        sharp.samples
+    );
+    assert!(reports.iter().all(|r| r.0 > loose.samples), "{reports:?}");
+    assert_eq!(sharp.samples, whole.samples);
+    assert!(bits(&sharp) == bits(&whole));
+    let (again, reports) = trace_until(&lab, case, "flip=0.03");
+    assert!(reports.is_empty() && bits(&again) == bits(&sharp));
+    let record = std::fs::read_to_string(sharp.folder.join("reference.json")).unwrap();
+    let record: serde_json::Value = serde_json::from_str(&record).unwrap();
+    let (stored, noise) = (
+        record["flip_noise"].as_f64().unwrap(),
+        sharp.parts["total"].noise.flip,
+    );
+    assert!((stored - noise).abs() < 1e-12, "{stored} and {noise}");
+    // --spp ends an unreachable bound.
+    let mut command = conelab(two.path());
+    command.args(["reference", "configs/rays.ron", "--scene", "cornell"]);
+    command.args(["--size", "24x18", "--bounces", "1", "--set", "seed=3"]);
+    let said = succeeds(command.args(["--until", "flip=1e-6", "--spp", "64"]));
+    assert!(said.contains("64 samples a pixel"), "{said}");
+    assert!(said.contains("above 0.000001: raise --spp"), "{said}");
 }
 
 #[test]

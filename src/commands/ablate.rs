@@ -10,7 +10,7 @@ use crate::campaign::record::write_files;
 use crate::campaign::sweep::{Options, Shard, Sweep};
 use crate::lab::{LabError, Workspace, focus_of, params_of};
 use crate::measure::Frames;
-use crate::measure::reference::ALL_BOUNCES;
+use crate::measure::reference::{ALL_BOUNCES, Goal};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -106,7 +106,7 @@ fn parameters(args: &AblateArgs) -> Result<(), LabError> {
             shard: Shard::ALL,
             frames,
             again: false,
-            samples: Some(args.spp),
+            goal: Some(Goal::Samples(args.spp)),
         };
         failed += run_with_bar(&home, &args.device, &sweep, &options)?.failed;
     }

@@ -3,7 +3,8 @@
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
 use crate::lab::{Lab, LabError, Workspace};
-use crate::measure::reference::{ALL_BOUNCES, Gathered, Goal, Reference, gather};
+use crate::measure::reference::{ALL_BOUNCES, Gathered, Goal, NoiseBound, Reference, gather};
+use crate::metrics::{Metric, RELMSE};
 use crate::results::table::Table;
 use clap::Args;
 use std::ops::ControlFlow;
@@ -15,12 +16,12 @@ use std::sync::Arc;
 pub struct ReferenceArgs {
     #[command(flatten)]
     experiment: ExperimentArgs,
-    /// Samples per pixel in total; rounded up to a multiple of 32. Default without --until: 256.
-    #[arg(long, value_name = "N", conflicts_with = "until")]
+    /// Samples per pixel in total, or with --until at most; rounded up to a multiple of 32. Default: 256, with --until 1048576.
+    #[arg(long, value_name = "N")]
     spp: Option<u64>,
-    /// Continue until the estimated relMSE against the converged reference is at most this (from two halves of the samples).
-    #[arg(long, value_name = "RELMSE")]
-    until: Option<f64>,
+    /// Continue until the error of the total against the converged reference, estimated from two halves of the samples, is at most this, for example flip=0.01 or relmse=1e-4.
+    #[arg(long, value_name = "METRIC=ERROR")]
+    until: Option<NoiseBound>,
     /// Maximum bounces after the first hit. 1: the single bounce that cones gather.
     #[arg(long, default_value_t = ALL_BOUNCES)]
     bounces: u32,
@@ -40,12 +41,15 @@ const DEFAULT_SAMPLES: u64 = 256;
 /// Gathers a reference.
 pub fn run(args: &ReferenceArgs) -> Result<(), LabError> {
     let experiment = args.experiment.read()?;
-    let goal = match (args.spp, args.until) {
-        (_, Some(most)) if most > 0.0 && most.is_finite() => Goal::Noise(most),
-        (_, Some(_)) => return Err(LabError::Request("--until must be a number above 0".into())),
-        (Some(n), _) if (1..=1 << 24).contains(&n) => Goal::Samples(n),
-        (Some(_), _) => return Err(LabError::Request("--spp must be 1 to 16777216".into())),
-        (None, None) => Goal::Samples(DEFAULT_SAMPLES),
+    if args.spp.is_some_and(|n| !(1..=1 << 24).contains(&n)) {
+        return Err(LabError::Request("--spp must be 1 to 16777216".into()));
+    }
+    let goal = match args.until {
+        Some(bound) => Goal::Noise(NoiseBound {
+            most: args.spp.unwrap_or(bound.most),
+            ..bound
+        }),
+        None => Goal::Samples(args.spp.unwrap_or(DEFAULT_SAMPLES)),
     };
     let home = Workspace::find()?;
     let scene = Arc::new(adapt::open_scene(&experiment)?);
@@ -65,10 +69,14 @@ pub fn run(args: &ReferenceArgs) -> Result<(), LabError> {
     table.column("relMSE of the halves", |p| {
         format!("{:.3e}", p.1.noise.relmse)
     });
+    table.column("FLIP of noise", |p| format!("{:.4}", p.1.noise.flip));
     table.column("structure of noise", |p| {
         format!("{:.3e}", p.1.noise.structure)
     });
     say_part!("{}", table.text());
+    if let Goal::Noise(bound) = goal {
+        say!("{}", reached(&reference, bound));
+    }
     say!("kept in {}", super::shown(&reference.folder).display());
     if let Some(path) = &args.output {
         let part = reference.parts.get(&args.part).ok_or_else(|| {
@@ -85,6 +93,22 @@ pub fn run(args: &ReferenceArgs) -> Result<(), LabError> {
     super::validated(&lab)
 }
 
+/// Estimated error of the total, and whether it is within the bound.
+fn reached(reference: &Reference, bound: NoiseBound) -> String {
+    let noise = reference.parts.get("total").map(|p| p.noise);
+    let error = noise.and_then(|n| bound.metric.of_noise(n));
+    let error = error.unwrap_or(f64::NAN);
+    let title = bound.metric.title;
+    if error <= bound.error {
+        format!("{title} of the total: {error:.3e}, at most {}", bound.error)
+    } else {
+        format!(
+            "{title} of the total: {error:.3e}, above {}: raise --spp",
+            bound.error
+        )
+    }
+}
+
 /// Gathers with a progress bar and the time left.
 pub fn with_bar(
     lab: &Lab,
@@ -97,6 +121,10 @@ pub fn with_bar(
         indicatif::ProgressStyle::with_template("{bar:30} {pos}/{len} samples, {msg}, {eta} left");
     let bar = indicatif::ProgressBar::new(1)
         .with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()));
+    let title = match goal {
+        Goal::Noise(bound) => bound.metric.title,
+        Goal::Samples(_) => Metric::of(RELMSE).map_or("", |m| m.title),
+    };
     let mut first = true;
     let result = gather(
         lab,
@@ -107,7 +135,10 @@ pub fn with_bar(
         &mut |now: Gathered| {
             // The bar is drawn whenever its position changes: all else must be said before.
             bar.set_length(now.goal);
-            bar.set_message(format!("relMSE {:.2e}", now.noise));
+            bar.set_message(
+                now.noise
+                    .map_or(String::new(), |n| format!("{title} {n:.2e}")),
+            );
             if first {
                 // Samples of an earlier run do not count for the speed.
                 bar.set_position(now.samples);

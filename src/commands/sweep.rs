@@ -6,6 +6,7 @@ use crate::campaign::runner::Counts;
 use crate::campaign::sweep::{Options, Shard, Sweep, run as run_sweep};
 use crate::lab::{Lab, LabError, Workspace};
 use crate::measure::Frames;
+use crate::measure::reference::Goal;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -27,9 +28,9 @@ pub struct SweepArgs {
     /// Warm-up frames per point, instead of the file's (extended to 100 ms on GPUs).
     #[arg(long)]
     warmup: Option<usize>,
-    /// First path-trace the references of the points to this number of samples per pixel. Without it, cached references are used as they are.
-    #[arg(long, value_name = "SAMPLES")]
-    reference: Option<u64>,
+    /// First path-trace the references of the points to this number of samples per pixel, or until their noise is at most a bound, for example flip=0.01. Without it, cached references are used as they are.
+    #[arg(long, value_name = "SAMPLES|METRIC=ERROR")]
+    reference: Option<Goal>,
     /// Measure failed points again.
     #[arg(long)]
     again: bool,
@@ -56,7 +57,7 @@ pub fn run(args: &SweepArgs) -> Result<(), LabError> {
         shard,
         frames,
         again: args.again,
-        samples: args.reference,
+        goal: args.reference,
     };
     let Counts { done, failed } = run_with_bar(&home, &args.device, &sweep, &options)?;
     let of = if shard.of > 1 {

@@ -62,6 +62,8 @@ pub struct PartComparison {
     pub part: String,
     /// relMSE between the halves of the reference's samples.
     pub noise: Option<f64>,
+    /// FLIP caused by the reference's noise alone.
+    pub flip_noise: Option<f64>,
     /// Structure error caused by the reference's noise alone (natural log units).
     pub structure_noise: Option<f64>,
     /// First and last exposure of HDR-FLIP, stops.
@@ -228,6 +230,7 @@ fn compare_part(
     PartComparison {
         part: part.into(),
         noise: noise.map(|n| n.relmse),
+        flip_noise: noise.map(|n| n.flip),
         structure_noise: noise.map(|n| n.structure),
         exposures: exposures.map_or([0.0; 2], |e| [e.start, e.stop]),
         exposure_count: exposures.map_or(0, |e| e.count),

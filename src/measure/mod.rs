@@ -58,6 +58,9 @@ pub struct Point {
     /// relMSE between the two halves of the reference's samples, by component; smaller scores are
     /// not significant.
     pub noise: BTreeMap<String, f64>,
+    /// FLIP caused by the reference's noise alone, by component.
+    #[serde(default)]
+    pub flip_noise: BTreeMap<String, f64>,
     /// Structure error caused by the reference's noise alone, by component (natural log units).
     #[serde(default)]
     pub structure_noise: BTreeMap<String, f64>,
@@ -66,11 +69,12 @@ pub struct Point {
 }
 
 impl Point {
-    /// Noise of a component's reference; 0 if unknown.
+    /// Noise of a component's reference; NaN if unknown.
     pub(crate) fn noise_of(&self, part: &str) -> Noise {
-        let of = |list: &BTreeMap<String, f64>| list.get(part).copied().unwrap_or(0.0);
+        let of = |list: &BTreeMap<String, f64>| list.get(part).copied().unwrap_or(f64::NAN);
         Noise {
             relmse: of(&self.noise),
+            flip: of(&self.flip_noise),
             structure: of(&self.structure_noise),
         }
     }
@@ -95,6 +99,7 @@ impl Point {
             self.structure_noise
                 .insert(name.clone(), expected.noise.structure);
         }
+        self.flip_noise.insert(name.clone(), expected.noise.flip);
         self.noise.insert(name, expected.noise.relmse);
         Ok(())
     }
@@ -201,6 +206,7 @@ pub fn measure(
             stats,
             scores: BTreeMap::new(),
             noise: BTreeMap::new(),
+            flip_noise: BTreeMap::new(),
             structure_noise: BTreeMap::new(),
             references: BTreeMap::new(),
         },

@@ -27,8 +27,8 @@ pub struct Warm {
 #[derive(Clone, Copy, Debug)]
 pub struct Wanted {
     pub bounces: u32,
-    /// Samples per pixel to gather; `None` uses only references on disk.
-    pub samples: Option<u64>,
+    /// Goal of gathering; `None` uses only references on disk.
+    pub goal: Option<Goal>,
     /// Seed of a frame in a sequence. All frames share it, so that their noise cancels in
     /// differences. The reference then has the means of both sample halves, and reuses the tracer
     /// of the previous frame.
@@ -88,7 +88,7 @@ impl Warm {
             on_progress(now);
             ControlFlow::Continue(())
         };
-        let reference = match (wanted.samples.map(Goal::Samples), wanted.seed) {
+        let reference = match (wanted.goal, wanted.seed) {
             (None, _) => find(&lab.home, experiment, scene, bounces)?,
             (Some(goal), None) => Some(gather(lab, experiment, scene, bounces, goal, &mut go_on)?),
             (Some(goal), Some(seed)) => {

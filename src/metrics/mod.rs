@@ -6,15 +6,17 @@ pub(crate) mod flip;
 pub(crate) mod hdr_flip;
 pub(crate) mod maps;
 mod means;
+mod noise;
 mod rank;
 pub(crate) mod region;
 mod structure;
 mod table;
 
+pub use noise::Noise;
 pub(crate) use rank::{median, percentile};
 pub use structure::{structure, structure_noise};
-pub(crate) use table::{Best, Metric, RELMSE};
-pub use table::{METRICS, Noise, Scores};
+pub(crate) use table::{Best, RELMSE};
+pub use table::{METRICS, Metric, Scores};
 
 use hdr_flip::Exposures;
 use serde::Deserialize;

@@ -1,7 +1,7 @@
 //! The table of metrics, used by tables, charts, verdicts and options.
 
 use super::means::{self, Mask};
-use super::{Compared, NOISE_FACTOR};
+use super::{Compared, NOISE_FACTOR, Noise};
 use serde::de::Error;
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -40,15 +40,6 @@ pub enum Best {
     Nowhere,
 }
 
-/// Noise floor of a reference, from the means of its even and odd samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Noise {
-    /// relMSE of one mean against the other. The mean of all samples has a quarter of it.
-    pub relmse: f64,
-    /// Structure error of the mean of all samples ([`super::structure_noise`]), natural log units.
-    pub structure: f64,
-}
-
 /// Effect of a reference's noise on a metric.
 pub struct OfNoise {
     /// Noise estimate of the metric.
@@ -57,6 +48,8 @@ pub struct OfNoise {
     pub perfect: f64,
     /// Significance threshold of differences, in multiples of the noise.
     pub none: f64,
+    /// The noise of n samples falls as n^-order. Only estimates of the remaining work use it.
+    pub order: f64,
 }
 
 /// Key of the metric that represents the noise of a picture.
@@ -71,6 +64,7 @@ pub static METRICS: &[Metric] = &[
             of: |n| n.relmse,
             perfect: 0.25,
             none: NOISE_FACTOR,
+            order: 1.0,
         }),
         ..metric(
             RELMSE,
@@ -104,6 +98,12 @@ pub static METRICS: &[Metric] = &[
     ),
     Metric {
         brief: true,
+        noise: Some(OfNoise {
+            of: |n| n.flip,
+            perfect: 1.0,
+            none: 1.0,
+            order: 0.35,
+        }),
         ..metric(
             "flip",
             "FLIP",
@@ -123,6 +123,7 @@ pub static METRICS: &[Metric] = &[
             of: |n| n.structure,
             perfect: 1.0,
             none: 1.0,
+            order: 0.7,
         }),
         ..metric(
             "structure",
@@ -224,6 +225,12 @@ impl Metric {
         } else {
             self.title.into()
         }
+    }
+
+    /// Expected value of a picture without errors, due to the reference's noise; `None` if the
+    /// metric's noise is unknown.
+    pub fn of_noise(&self, noise: Noise) -> Option<f64> {
+        self.noise.as_ref().map(|of| of.perfect * (of.of)(noise))
     }
 
     /// Whether a distance, or a difference of two, is within the noise of the reference.

@@ -244,10 +244,7 @@ fn error(before: &Point, after: &Point, part: &str, metric: &Metric) -> Option<S
     let (unchanged, changed) = (value(before)?, value(after)?);
     // Noise of the reference gives a perfect picture this error. Both numbers contain it, so a
     // change is known far better.
-    let known = metric
-        .noise
-        .as_ref()
-        .map_or(0.0, |of| of.perfect * (of.of)(before.noise_of(part)));
+    let known = metric.of_noise(before.noise_of(part)).unwrap_or(0.0);
     Some(match metric.best {
         Best::One => Sample {
             unchanged,

@@ -14,7 +14,7 @@ use crate::experiment::Experiment;
 use crate::graph::Graph;
 use crate::graph::param::Params;
 use crate::lab::{LabError, parts_of};
-use crate::measure::{Frames, Scored};
+use crate::measure::{Frames, Scored, reference};
 use crate::metrics::Metric;
 use crate::results::stats::DeviceStats;
 use std::path::PathBuf;
@@ -88,7 +88,7 @@ impl Request<'_> {
         Measuring {
             frames: self.frames,
             bounces: std::slice::from_ref(&self.bounces),
-            samples: Some(self.samples),
+            goal: Some(reference::Goal::Samples(self.samples)),
             scored: Scored::One(self.part, self.metric),
         }
     }

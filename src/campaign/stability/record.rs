@@ -58,6 +58,9 @@ pub struct PartResult {
     pub scores: Option<Scores>,
     /// relMSE between the halves of the last reference.
     pub noise: Option<f64>,
+    /// FLIP due to the noise of the last reference.
+    #[serde(default)]
+    pub flip_noise: Option<f64>,
     /// Structure error due to the noise of the last reference, natural log units.
     #[serde(default)]
     pub structure_noise: Option<f64>,
@@ -70,6 +73,7 @@ impl PartResult {
         let known = |v: Option<f64>| v.unwrap_or(f64::NAN);
         Noise {
             relmse: known(self.noise),
+            flip: known(self.flip_noise),
             structure: known(self.structure_noise),
         }
     }

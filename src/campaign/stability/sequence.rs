@@ -12,7 +12,7 @@ use crate::graph::param::Value;
 use crate::lab::{Lab, LabError, Session, parts_of};
 use crate::measure::Wanted;
 use crate::measure::oracle::{self, Surfaces};
-use crate::measure::reference::Reference;
+use crate::measure::reference::{Goal, Reference};
 use crate::metrics::median;
 use crate::scene::{Light, Scene};
 use glam::DVec3;
@@ -236,7 +236,7 @@ fn reference_of(
     } = tracing;
     let wanted = Wanted {
         bounces,
-        samples: Some(samples),
+        goal: Some(Goal::Samples(samples)),
         seed: Some(seed),
     };
     let subject = format!("{} {:?} {state:?}", job.scene_hash, experiment.size);

@@ -89,6 +89,7 @@ impl PartSeries {
                 let compared = Compared::new(&x, &t.mean).ok();
                 self.result.scores = compared.and_then(|c| c.scores(None));
                 self.result.noise = number(t.noise.relmse);
+                self.result.flip_noise = number(t.noise.flip);
                 self.result.structure_noise = number(t.noise.structure);
             }
         }

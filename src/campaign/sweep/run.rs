@@ -10,7 +10,7 @@ use crate::campaign::record::{File, Folder, write_file};
 use crate::campaign::runner::{Counts, Job, Open, Progress, Runner, Taken};
 use crate::experiment::resolved_text;
 use crate::lab::{LabError, camera_of};
-use crate::measure::reference::Reference;
+use crate::measure::reference::{Goal, Reference};
 use crate::measure::{Frames, Point, Scored, Wanted, measure};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -40,9 +40,8 @@ pub struct Options {
     pub frames: Frames,
     /// Whether failed points are measured again.
     pub again: bool,
-    /// Gather references to this number of samples per pixel first. `None` uses cached references
-    /// only.
-    pub samples: Option<u64>,
+    /// Gather references to this goal first. `None` uses cached references only.
+    pub goal: Option<Goal>,
 }
 
 impl Job for SweepPoint {
@@ -115,13 +114,11 @@ pub fn run(
     Manifest::new(name, text, names, options.frames, listed).write(&options.folder)?;
     let Shard { number, of } = options.shard;
     let mine: Vec<&SweepPoint> = points.iter().skip(number - 1).step_by(of).collect();
-    let Options {
-        frames, samples, ..
-    } = *options;
+    let Options { frames, goal, .. } = *options;
     let measuring = Measuring {
         frames,
         bounces: &sweep.bounces,
-        samples,
+        goal,
         scored: Scored::All,
     };
     let mut elsewhere = 0;
@@ -156,8 +153,8 @@ pub struct Measuring<'a> {
     pub frames: Frames,
     /// Bounces of the references.
     pub bounces: &'a [u32],
-    /// Samples per pixel to gather references to first. `None` uses cached references only.
-    pub samples: Option<u64>,
+    /// Gather references to this goal first. `None` uses cached references only.
+    pub goal: Option<Goal>,
     /// Scores of the points.
     pub scored: Scored<'a>,
 }
@@ -222,7 +219,7 @@ impl Measuring<'_> {
         for bounces in self.bounces.iter().filter(|_| point.absent.is_none()) {
             let wanted = Wanted {
                 bounces: *bounces,
-                samples: self.samples,
+                goal: self.goal,
                 seed: None,
             };
             let found = runner.reference(

@@ -3,6 +3,7 @@
 use super::record::{Collected, ManifestPoint, PointRecord};
 use crate::lab::LabError;
 use crate::measure::Point;
+use crate::metrics::METRICS;
 use crate::results::stats::Stats;
 use crate::results::table::{Table, cell};
 use indexmap::IndexSet;
@@ -15,6 +16,21 @@ pub fn parts_of(point: &Point) -> BTreeMap<String, BTreeMap<String, f64>> {
         .iter()
         .map(|(part, scores)| (part.clone(), scores.numbers()))
         .collect()
+}
+
+/// Scores of a point with the noise of the reference, `METRIC noise`.
+fn columns_of(point: &Point) -> BTreeMap<String, BTreeMap<String, f64>> {
+    let mut parts = parts_of(point);
+    for (part, numbers) in &mut parts {
+        let noise = point.noise_of(part);
+        for metric in METRICS {
+            let value = metric.noise.as_ref().map(|of| (of.of)(noise));
+            if let Some(value) = value.filter(|v| v.is_finite()) {
+                numbers.insert(format!("{} noise", metric.key), value);
+            }
+        }
+    }
+    parts
 }
 
 /// A line of the table.
@@ -32,7 +48,7 @@ impl<'c> Row<'c> {
             record,
             parts: record
                 .and_then(|r| r.done())
-                .map(parts_of)
+                .map(columns_of)
                 .unwrap_or_default(),
         }
     }

@@ -35,11 +35,13 @@ fn block(out: &mut String, part: &PartComparison, pictures: &[String]) {
         table.column(head, |l| l.2.get(i).cloned().unwrap_or("-".into()));
     }
     let _ = write!(out, "\n{}", table.text());
-    if let (Some(relmse), Some(structure)) = (part.noise, part.structure_noise) {
-        let (relmse, structure) = (four_digits(relmse), four_digits(structure));
+    if let (Some(relmse), Some(flip), Some(structure)) =
+        (part.noise, part.flip_noise, part.structure_noise)
+    {
+        let [relmse, flip, structure] = [relmse, flip, structure].map(four_digits);
         let _ = writeln!(
             out,
-            "  noise of the reference: relMSE {relmse}, structure {structure}"
+            "  noise of the reference: relMSE {relmse}, FLIP {flip}, structure {structure}"
         );
     }
     let frame = part.regions.first();

@@ -30,7 +30,7 @@ impl fmt::Display for Verdict {
 }
 
 /// The better picture by metric. Differences are insignificant within four times the noise for
-/// relMSE, and within the noise for structure, because the noise adds that much to a perfect
+/// relMSE, and within the noise for FLIP and structure, because the noise adds that much to a perfect
 /// picture. The noise of other metrics is unknown; they are undecided if both pictures' relMSE is
 /// within the noise.
 pub fn better(a: &Scores, b: &Scores, noise: Option<Noise>) -> BTreeMap<&'static str, Verdict> {

@@ -1,25 +1,17 @@
 //! Gathers samples until a goal is reached and saves them on the way.
 
+use super::goal::{Goal, is_checkpoint};
 use super::store::{self, Sums};
 use super::{Reference, key};
 use crate::experiment::Experiment;
 use crate::graph::LightPart;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
+use crate::metrics::{Metric, RELMSE};
 use crate::scene::Scene;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-
-/// Stopping criterion of a reference.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Goal {
-    /// Samples per pixel, rounded up to a multiple of `store::BLOCK`.
-    Samples(u64),
-    /// Until the relMSE of the total against the converged reference, estimated from its halves, is
-    /// at most this.
-    Noise(f64),
-}
 
 /// Progress towards the goal.
 #[derive(Clone, Copy, Debug)]
@@ -28,15 +20,13 @@ pub struct Gathered {
     pub samples: u64,
     /// Estimated samples at the goal.
     pub goal: u64,
-    /// Estimated relMSE of the total against the converged reference.
-    pub noise: f64,
+    /// Error of the total against the converged reference, estimated at the last checkpoint: by the
+    /// metric of the bound, otherwise relMSE.
+    pub noise: Option<f64>,
 }
 
 /// Interval between saves.
 const KEEP_EVERY: Duration = Duration::from_secs(30);
-
-/// Maximum samples for a noise goal, which may be unreachable.
-const MOST_SAMPLES: u64 = 1 << 20;
 
 /// Gathers the reference of an experiment and resumes an earlier run. `scene` has the experiment's
 /// lighting. Equal sample counts give equal bits on a device, regardless of interruptions.
@@ -121,7 +111,7 @@ impl Tracer {
         let graph = &loaded.graph;
         let sums = store::read(&folder, traced.size, graph)?;
         let mut sums = sums.unwrap_or_else(|| Sums::new(traced.size, &graph.parts));
-        let mut now = state(&sums, goal)?;
+        let mut now = state(&sums, goal, None)?;
         if now.samples >= now.goal {
             return Ok(Traced {
                 sums,
@@ -137,7 +127,7 @@ impl Tracer {
         let (mut kept, mut all_kept) = (Instant::now(), true);
         while now.samples < now.goal {
             frame(lab, &mut session, &mut sums, per_frame)?;
-            now = state(&sums, goal)?;
+            now = state(&sums, goal, Some(now))?;
             let stop = progress(now).is_break();
             // Whole blocks only, so that the sums do not depend on interruptions.
             let whole = sums.samples.is_multiple_of(store::BLOCK);
@@ -170,37 +160,24 @@ impl Tracer {
     }
 }
 
-/// Progress of the sums towards a goal.
-fn state(sums: &Sums, goal: Goal) -> Result<Gathered, LabError> {
-    let noise = if sums.samples >= 2 {
-        sums.noise("total")? / 4.0
-    } else {
-        f64::INFINITY
+/// Progress of the sums towards a goal. Noise between checkpoints is that of `before`.
+fn state(sums: &Sums, goal: Goal, before: Option<Gathered>) -> Result<Gathered, LabError> {
+    let metric = match goal {
+        Goal::Samples(_) => Metric::of(RELMSE),
+        Goal::Noise(bound) => Some(bound.metric),
     };
-    let blocks = |samples: u64| samples.max(1).next_multiple_of(store::BLOCK);
-    let goal = match goal {
-        Goal::Samples(n) => blocks(n),
-        Goal::Noise(most) if noise <= most && sums.samples.is_multiple_of(store::BLOCK) => {
-            sums.samples
+    let noise = match before {
+        Some(before) if !is_checkpoint(sums.samples) => before.noise,
+        // Samples of an earlier run may end between checkpoints.
+        _ if sums.samples > 0 => {
+            let noise = sums.noise()?;
+            metric.and_then(|m| m.of_noise(noise))
         }
-        // The squared error is inversely proportional to the number of samples.
-        Goal::Noise(most) => {
-            let factor = if noise.is_finite() && most > 0.0 {
-                (noise / most).clamp(1.0, 1e6)
-            } else {
-                2.0
-            };
-            let more = (sums.samples.max(1) as f64 * factor) as u64;
-            if sums.samples >= MOST_SAMPLES {
-                sums.samples
-            } else {
-                blocks(more.max(sums.samples + 1)).min(MOST_SAMPLES)
-            }
-        }
+        _ => None,
     };
     Ok(Gathered {
         samples: sums.samples,
-        goal,
+        goal: goal.samples(sums.samples, noise),
         noise,
     })
 }

@@ -2,11 +2,13 @@
 //! stored under a hash of their inputs.
 
 mod gather;
+mod goal;
 mod key;
 mod store;
 
+pub use gather::gather;
 pub(crate) use gather::{Gathered, Tracer};
-pub use gather::{Goal, gather};
+pub use goal::{Goal, NoiseBound};
 pub use key::GRAPH;
 pub(crate) use key::experiment_for;
 

@@ -6,7 +6,7 @@ use crate::experiment::Experiment;
 use crate::files::{check_input, hex, read_input};
 use crate::graph::{Graph, LightPart};
 use crate::lab::LabError;
-use crate::metrics::{Kind, Linear, MetricError, Noise, relmse, structure_noise};
+use crate::metrics::{Kind, Linear, MetricError, Noise, relmse};
 use crate::vulkan::DeviceInfo;
 use exr::meta::MetaData;
 use exr::meta::header::Header;
@@ -44,6 +44,10 @@ struct Record {
     size: (u32, u32),
     /// relMSE between the halves, by part.
     noise: BTreeMap<String, f64>,
+    /// FLIP of the total against the converged reference, estimated; `None` in files of older
+    /// versions.
+    #[serde(default)]
+    flip_noise: Option<f64>,
     /// Origin of the reference, for display.
     experiment: String,
     scene: String,
@@ -126,9 +130,26 @@ impl Sums {
     }
 
     /// relMSE of the even samples' mean against that of the odd ones.
-    pub fn noise(&self, part: &str) -> Result<f64, LabError> {
+    fn relmse(&self, part: &str) -> Result<f64, LabError> {
         let [even, odd] = [0, 1].map(|half| self.mean(part, Kind::Radiance, &[half]));
         relmse(&even, &odd).map_err(|e| wrong(part, &e))
+    }
+
+    /// The noise of the total.
+    pub fn noise(&self) -> Result<Noise, LabError> {
+        self.part("total", Kind::Radiance, false).map(|p| p.noise)
+    }
+
+    /// Mean and noise of a component; `halves` adds the means of the even and the odd samples.
+    fn part(&self, name: &str, kind: Kind, halves: bool) -> Result<ReferencePart, LabError> {
+        let [even, odd] = [0, 1].map(|half| self.mean(name, kind, &[half]));
+        let mean = self.mean(name, kind, &[0, 1]);
+        let noise = Noise::of_halves([&even, &odd], &mean).map_err(|e| wrong(name, &e))?;
+        Ok(ReferencePart {
+            mean,
+            noise,
+            halves: halves.then_some([even, odd]),
+        })
     }
 
     /// Means and noise of all components; `halves` adds the means of the even and the odd samples.
@@ -139,21 +160,7 @@ impl Sums {
         halves: bool,
     ) -> Result<Reference, LabError> {
         let part = |LightPart { name, kind, .. }: &LightPart| {
-            let [even, odd] = [0, 1].map(|half| self.mean(name, *kind, &[half]));
-            let failed = |e: MetricError| wrong(name, &e);
-            let noise = Noise {
-                relmse: relmse(&even, &odd).map_err(failed)?,
-                structure: structure_noise(&even, &odd).map_err(failed)?,
-            };
-            let halves = halves.then_some([even, odd]);
-            Ok((
-                name.clone(),
-                ReferencePart {
-                    mean: self.mean(name, *kind, &[0, 1]),
-                    noise,
-                    halves,
-                },
-            ))
+            Ok((name.clone(), self.part(name, *kind, halves)?))
         };
         let parts = graph
             .parts
@@ -191,7 +198,7 @@ pub(super) fn write(
     let noise = sums
         .parts
         .keys()
-        .map(|p| Ok((p.clone(), sums.noise(p)?)))
+        .map(|p| Ok((p.clone(), sums.relmse(p)?)))
         .collect::<Result<_, LabError>>()?;
     let record = Record {
         schema: SCHEMA.into(),
@@ -200,6 +207,7 @@ pub(super) fn write(
         samples: sums.samples,
         size: sums.size,
         noise,
+        flip_noise: Some(sums.noise()?.flip),
         experiment: traced.name.clone(),
         scene: traced.scene.clone(),
         params: traced
@@ -349,7 +357,7 @@ fn keep_noise(json: &Path, mut record: Record, sums: &Sums) -> Result<(), LabErr
     let noise: BTreeMap<String, f64> = sums
         .parts
         .keys()
-        .map(|p| Ok((p.clone(), sums.noise(p)?)))
+        .map(|p| Ok((p.clone(), sums.relmse(p)?)))
         .collect::<Result<_, LabError>>()?;
     let same = |a: f64, b: f64| {
         a == b || (a - b).abs() <= 1e-9 * a.abs().max(b.abs()) || a.is_nan() && b.is_nan()
@@ -360,10 +368,11 @@ fn keep_noise(json: &Path, mut record: Record, sums: &Sums) -> Result<(), LabErr
             .get(part)
             .is_some_and(|told| same(*told, *value))
     });
-    if kept && noise.len() == record.noise.len() {
+    if kept && noise.len() == record.noise.len() && record.flip_noise.is_some() {
         return Ok(());
     }
     record.noise = noise;
+    record.flip_noise = Some(sums.noise()?.flip);
     let text = serde_json::to_vec_pretty(&record).map_err(|e| failed(json, e))?;
     // A read-only folder keeps the old value.
     let _ = crate::files::write_whole(json, &text);

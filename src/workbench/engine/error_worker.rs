@@ -193,7 +193,7 @@ impl Cache {
         let lit = experiment.adapted(scene.clone())?;
         let wanted = Wanted {
             bounces: query.bounces,
-            samples: None,
+            goal: None,
             seed: None,
         };
         self.warm.reference(

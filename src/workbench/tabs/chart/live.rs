@@ -335,6 +335,7 @@ mod tests {
             error: 0.1,
             noise: Noise {
                 relmse: 0.0,
+                flip: 0.0,
                 structure: 0.0,
             },
             samples: 256,
