@@ -224,6 +224,22 @@ fn moving() -> String {
     )
 }
 
+/// FLIP of the reference's noise, marked if it is more than a quarter of the method's FLIP.
+fn noise_cell(flip: f64, noise: f64) -> String {
+    match noise {
+        noise if noise.is_nan() => "unknown".into(),
+        noise if noise <= 0.25 * flip => format!("{noise:.4}"),
+        noise => format!("**{noise:.4}, above 1/4**"),
+    }
+}
+
+#[test]
+fn noise_above_a_quarter_of_the_flip_is_marked() {
+    assert_eq!(noise_cell(0.1, 0.025), "0.0250");
+    assert_eq!(noise_cell(0.1, 0.026), "**0.0260, above 1/4**");
+    assert_eq!(noise_cell(0.1, f64::NAN), "unknown");
+}
+
 /// The three methods in every scene, the worst of rays first.
 fn scenes() -> String {
     let record = record("scenes");
@@ -246,6 +262,8 @@ fn scenes() -> String {
         ("total, 1 bounces relmse", 4),
         ("total median ms", 2),
     ];
+    let noise = |name: &String| number(methods[0][name], "total flip noise");
+    let is_noise_known = names.iter().any(|name| noise(name).is_finite());
     let line = |name: &&String| {
         let cell = |(column, digits): (&str, usize)| {
             let of = methods
@@ -253,12 +271,14 @@ fn scenes() -> String {
                 .map(|m| m.get(*name).map_or(f64::NAN, |l| number(l, column)));
             of.map(|x| format!("{x:.digits$}")).join(" / ")
         };
+        let noise = noise_cell(number(methods[0][*name], "total flip"), noise(name));
         std::iter::once((*name).clone())
             .chain(columns.map(cell))
+            .chain(is_noise_known.then_some(noise))
             .collect()
     };
     let lines: Vec<Vec<String>> = names.iter().map(line).collect();
-    let head = [
+    let mut head = vec![
         "scene",
         "energy",
         "FLIP",
@@ -266,6 +286,9 @@ fn scenes() -> String {
         "relMSE, one bounce",
         "ms",
     ];
+    if is_noise_known {
+        head.push("FLIP of the reference's noise");
+    }
     format!(
         "*{}*\n\nEach cell: rays / cones / thesis.\n\n{}",
         record.said,
