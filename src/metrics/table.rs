@@ -102,7 +102,7 @@ pub static METRICS: &[Metric] = &[
             of: |n| n.flip,
             perfect: 1.0,
             none: 1.0,
-            order: 0.35,
+            order: 0.3,
         }),
         ..metric(
             "flip",
