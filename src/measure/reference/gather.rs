@@ -6,7 +6,6 @@ use super::{Reference, key};
 use crate::experiment::Experiment;
 use crate::graph::LightPart;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
-use crate::metrics::{Metric, RELMSE};
 use crate::scene::Scene;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -162,18 +161,13 @@ impl Tracer {
 
 /// Progress of the sums towards a goal. Noise between checkpoints is that of `before`.
 fn state(sums: &Sums, goal: Goal, before: Option<Gathered>) -> Result<Gathered, LabError> {
-    let metric = match goal {
-        Goal::Samples(_) => Metric::of(RELMSE),
-        Goal::Noise(bound) => Some(bound.metric),
-    };
-    let noise = match before {
-        Some(before) if !is_checkpoint(sums.samples) => before.noise,
-        // Samples of an earlier run may end between checkpoints.
-        _ if sums.samples > 0 => {
-            let noise = sums.noise()?;
-            metric.and_then(|m| m.of_noise(noise))
-        }
-        _ => None,
+    // Samples of an earlier run may end between checkpoints.
+    let noise = match (before, goal) {
+        (Some(before), _) if !is_checkpoint(sums.samples) => before.noise,
+        _ if sums.samples == 0 => None,
+        // For display only: FLIP and structure would take longer than the samples of a fast device.
+        (_, Goal::Samples(_)) => Some(sums.relmse("total")? / 4.0),
+        (_, Goal::Noise(bound)) => bound.metric.of_noise(sums.noise()?),
     };
     Ok(Gathered {
         samples: sums.samples,

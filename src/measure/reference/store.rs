@@ -130,12 +130,18 @@ impl Sums {
     }
 
     /// relMSE of the even samples' mean against that of the odd ones.
-    fn relmse(&self, part: &str) -> Result<f64, LabError> {
+    pub fn relmse(&self, part: &str) -> Result<f64, LabError> {
         let [even, odd] = [0, 1].map(|half| self.mean(part, Kind::Radiance, &[half]));
         relmse(&even, &odd).map_err(|e| wrong(part, &e))
     }
 
-    /// The noise of the total.
+    /// [`Self::relmse`] of all components.
+    fn relmse_by_part(&self) -> Result<BTreeMap<String, f64>, LabError> {
+        let names = self.parts.keys();
+        names.map(|p| Ok((p.clone(), self.relmse(p)?))).collect()
+    }
+
+    /// The noise of the total. Takes seconds for large pictures, because of FLIP and structure.
     pub fn noise(&self) -> Result<Noise, LabError> {
         self.part("total", Kind::Radiance, false).map(|p| p.noise)
     }
@@ -195,18 +201,13 @@ pub(super) fn write(
     let file = folder.join(&name);
     let bytes = encode(sums).map_err(|e| failed(&file, e))?;
     crate::files::write_whole(&file, &bytes)?;
-    let noise = sums
-        .parts
-        .keys()
-        .map(|p| Ok((p.clone(), sums.relmse(p)?)))
-        .collect::<Result<_, LabError>>()?;
     let record = Record {
         schema: SCHEMA.into(),
         sums: name,
         sha256: hex(&Sha256::digest(&bytes)),
         samples: sums.samples,
         size: sums.size,
-        noise,
+        noise: sums.relmse_by_part()?,
         flip_noise: Some(sums.noise()?.flip),
         experiment: traced.name.clone(),
         scene: traced.scene.clone(),
@@ -354,11 +355,7 @@ pub(super) fn read(
 
 /// Updates the noise in the description, if it differs. Nothing depends on the stored value.
 fn keep_noise(json: &Path, mut record: Record, sums: &Sums) -> Result<(), LabError> {
-    let noise: BTreeMap<String, f64> = sums
-        .parts
-        .keys()
-        .map(|p| Ok((p.clone(), sums.relmse(p)?)))
-        .collect::<Result<_, LabError>>()?;
+    let noise = sums.relmse_by_part()?;
     let same = |a: f64, b: f64| {
         a == b || (a - b).abs() <= 1e-9 * a.abs().max(b.abs()) || a.is_nan() && b.is_nan()
     };
