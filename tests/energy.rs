@@ -3,8 +3,9 @@
 
 mod common;
 
-use common::{assert_clean, experiment, lab, prepare, root};
+use common::{assert_clean, experiment, lab, prepare, root, words};
 use conelab::lab::Session;
+use half::f16;
 use std::path::{Path, PathBuf};
 
 /// Size of the room [m], its additional solids, the materials of its walls that are not "wall", and its lights.
@@ -90,14 +91,6 @@ fn write(folder: &Path, room: &Room, albedo: f64) -> PathBuf {
     file
 }
 
-fn words(session: &mut Session, name: &str) -> Vec<u32> {
-    let bytes = session.buffer(name).unwrap();
-    let words = bytes.chunks_exact(4);
-    words
-        .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-        .collect()
-}
-
 /// Area of each side of each surfel, 0 without a surface [1/16 mask texel].
 fn areas(session: &mut Session) -> Vec<f64> {
     let sums = words(session, "surfelSums");
@@ -108,22 +101,16 @@ fn areas(session: &mut Session) -> Vec<f64> {
         .collect()
 }
 
-fn half(bits: u32) -> f64 {
-    let (exponent, mantissa) = (bits >> 10 & 31, f64::from(bits & 1023) / 1024.0);
-    match exponent {
-        0 => mantissa * 2f64.powi(-14),
-        e => (1.0 + mantissa) * 2f64.powi(e as i32 - 15),
-    }
-}
-
 /// Red light on all sides, weighted by area.
 fn light(session: &mut Session, name: &str, areas: &[f64]) -> f64 {
     let list = words(session, name);
-    let red = list.chunks_exact(2).map(|w| half(w[0] & 0xffff));
+    let red = list
+        .chunks_exact(2)
+        .map(|w| f16::from_bits(w[0] as u16).to_f64());
     red.zip(areas).map(|(light, area)| light * area).sum()
 }
 
-/// Bounds hold the noise of eight directions per surfel. The corridor is ten voxels wide. Coarser voxels change the
+/// Bounds allow for the noise of eight directions per surfel. The corridor is ten voxels wide. Coarser voxels change the
 /// shape: columns of three voxels gain 0.8 % per bounce.
 #[test]
 fn closed_rooms_keep_all_light() {

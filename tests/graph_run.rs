@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{assert_clean, conelab, floats, prepare, succeeds};
+use common::{assert_clean, conelab, floats, prepare, succeeds, words};
 use conelab::experiment::Experiment;
 use conelab::graph::table::{Cell, decode};
 use conelab::lab::{Lab, Session};
@@ -187,21 +187,6 @@ fn store(name: &str, value: &str) -> String {
         layout(r32f) uniform writeonly image2D {name};
         void main() {{ imageStore({name}, ivec2(gl_GlobalInvocationID.xy), vec4({value})); }}"
     )
-}
-
-/// The 32-bit words of a buffer.
-fn words(session: &mut Session, name: &str) -> Vec<u32> {
-    let index = session
-        .graph
-        .buffers
-        .iter()
-        .position(|b| b.0 == name)
-        .unwrap();
-    let bytes = session.program.read_buffer(index).unwrap();
-    bytes
-        .chunks_exact(4)
-        .map(|b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]]))
-        .collect()
 }
 
 /// The first channel of a texture's mip.

@@ -186,6 +186,16 @@ pub fn floats(session: &mut Session, name: &str, mip: u32) -> Vec<[f32; 4]> {
     session.texels(name, mip, 0).unwrap().floats()
 }
 
+/// The 32-bit words of a buffer.
+#[track_caller]
+pub fn words(session: &mut Session, name: &str) -> Vec<u32> {
+    let bytes = session.buffer(name).unwrap();
+    let words = bytes.chunks_exact(4);
+    words
+        .map(|b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]]))
+        .collect()
+}
+
 /// Mean of the red, green and blue of some texels.
 pub fn mean(texels: &[[f32; 4]]) -> f64 {
     texels
