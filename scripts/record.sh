@@ -63,7 +63,7 @@ record() {
             run "${way[@]}" --json "$work/moving.json" -o "$work/moving.png"
             keep_json moving "$work/moving.json" "${way[@]}"
             ;;
-        scenes) sweep configs/sweeps/scenes.ron --reference flip=0.01 ;;
+        scenes) sweep configs/sweeps/scenes.ron --reference 1024 ;;
         exposures) sweep configs/sweeps/thesis.ron --reference 1024 ;;
         lamps) sweep configs/sweeps/lamps.ron --reference 512 ;;
         sponza) # the chart alone
