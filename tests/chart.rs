@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use window_driver::{PATIENCE, WindowDriver, centre};
 
 /// Small enough for a software device to draw several a second, and nothing gathers over frames: a picture is one frame.
-const SMALL: &str = r#"(graph: "cones.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "cone_count": 9, "diffuse_aperture": 60, "lod_offset": 0 })"#;
+const SMALL: &str = r#"(graph: "cones.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "accumulation_rounds": 1, "cone_count": 9, "diffuse_aperture": 60, "lod_offset": 0 })"#;
 
 /// Four points, one of them [`SMALL`].
 const SWEEP: &str = r#"(experiments: ["configs/opened.ron"], warmup: 1, frames: 3,

@@ -9,7 +9,7 @@ use conelab::workbench::events::fingerprint;
 use window_driver::{CONTROL, WindowDriver, centre};
 
 /// Light that does not depend on earlier frames, small enough for a software device.
-const BOX: &str = r#"(graph: "cones.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "cone_count": 3, "emitter_rays": 0 })"#;
+const BOX: &str = r#"(graph: "cones.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "accumulation_rounds": 1, "cone_count": 3, "emitter_rays": 0 })"#;
 
 fn open(experiment: &str) -> WindowDriver {
     let mut driver = WindowDriver::open(experiment, &["--size", "160x120"]);

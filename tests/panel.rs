@@ -9,7 +9,7 @@ use std::time::Duration;
 use window_driver::{CONTROL, PATIENCE, WindowDriver, centre, with};
 
 /// Cones in every pixel, so that the pinned parameters count; small enough for a software device.
-const CONES: &str = r#"(graph: "cones.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "cone_count": 3, "emitter_rays": 0, "lod_offset": 0 })"#;
+const CONES: &str = r#"(graph: "cones.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "accumulation_rounds": 1, "cone_count": 3, "emitter_rays": 0, "lod_offset": 0 })"#;
 
 const ESCAPE: u32 = 0xff1b;
 const F12: u32 = 0xffc9;

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use window_driver::{CONTROL, F1, PATIENCE, SHIFT, WINDOW, WindowDriver, centre, with};
 
 /// Small enough for a software device to draw several a second.
-const SMALL: &str = r#"(graph: "rays.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "pixel_rays": 2 })"#;
+const SMALL: &str = r#"(graph: "rays.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "accumulation_rounds": 1, "pixel_rays": 2 })"#;
 
 /// A line of `shaders/gather/interleaved.glsl`, which every picture of [`SMALL`] depends on.
 const GATHERED: &str = "vec4 hemisphere = vec4(0.0);";

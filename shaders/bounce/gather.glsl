@@ -15,8 +15,11 @@ struct SideShifts {
     vec4 emitters;
 };
 
-SideShifts shiftsOf(ivec3 cell, uint axis, uint side) {
-    Random random = Random(uvec4(packCell(cell), 2u * axis + side, 0u, 0u));
+// The cell counts from the world's origin, so that directions stay when the volume moves in steps of cells.
+// round: of new directions, see history/rounds.glsl.
+SideShifts shiftsOf(VolumeMap map, ivec3 cell, uint axis, uint side, uint round) {
+    uvec3 key = uvec3(cell + ivec3(floor(map.minimum / map.cell + 0.25)));
+    Random random = Random(uvec4(key.xy, 2u * round, key.z * 6u + 2u * axis + side));
     vec4 first = next4(random);
     return SideShifts(first.xy, first.z, next4(random));
 }

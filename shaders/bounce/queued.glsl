@@ -19,6 +19,7 @@ layout(std430) readonly buffer LastBlocks { uvec4 list[]; } lastBlocks;
 #include "bounce/gather.glsl"
 #include "bounce/queue.glsl"
 #include "bounce/placed.glsl"
+#include "history/rounds.glsl"
 
 const uint BOUNCE_THREADS = 4;
 
@@ -31,8 +32,9 @@ vec3 gatheredShare(uint surfel, uint side, int part) {
     if (s.normal == vec3(0.0)) return vec3(0.0);
     ivec3 cell = cellOfSurfel(surfel);
     uint axis = uint(axisOfSurfel(surfel));
-    vec3 p = surfelPosition(placed.maps[cascadeOf(cell)], cell, surfelBase(surfel), side, axis);
-    SideShifts shifts = shiftsOf(cell, axis, side);
+    VolumeMap map = placed.maps[cascadeOf(cell)];
+    vec3 p = surfelPosition(map, cell, surfelBase(surfel), side, axis);
+    SideShifts shifts = shiftsOf(map, cell, axis, side, bounceRound());
     return gatherAt(p, s.normal, emits(surfel, side), shifts, part, int(BOUNCE_THREADS));
 }
 
@@ -50,7 +52,10 @@ void main() {
         barrier();
         if (part == 0 && start + lane < count) {
             for (uint k = 1; k < BOUNCE_THREADS; k++) light += shared_light[k][lane];
-            sideGathered.list[index] = packLight(light, numberOf(sideGathered.list[index]));
+            uvec2 last = sideGathered.list[index];
+            float updates = numberOf(last), averaged = max(updates - float(params.bounce_frames), 0.0);
+            light = mix(lightOf(last), light, weightOfRound(uint(averaged)));
+            sideGathered.list[index] = packLight(light, updates);
         }
         barrier();
     }

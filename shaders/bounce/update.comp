@@ -6,6 +6,7 @@
 #define QUEUE_WRITES
 #include "bounce/queue.glsl"
 #include "bounce/placed.glsl"
+#include "history/rounds.glsl"
 
 layout(local_size_x = 128) in;
 
@@ -30,9 +31,13 @@ bool updateHistory(uint surfel, uint side, bool has_history) {
     int cascade = cascadeOf(cell);
     vec3 p = volumeToWorld(placed.maps[cascade], cellCentre(cell));
     uvec2 last = reprojected(p, cascade, uint(axisOfSurfel(surfel)), side);
-    float updates = numberOf(last);
-    bool due = updates < float(phases) || phaseOf(uvec3(cell) >> 2) == camera.frame % phases;
-    sideGathered.list[index] = due ? packLight(vec3(0.0), min(updates + 1.0, float(phases))) : last;
+    // Beyond `phases`, updates count the rounds that the mean has taken since its first.
+    bool averages = bounceRound() > 0;
+    uint most = phases + (averages ? uint(params.accumulation_rounds) - 1 : 0);
+    uint updates = min(uint(numberOf(last)), most);
+    bool complete = averages && updates == most;
+    bool due = updates < phases || !complete && phaseOf(uvec3(cell) >> 2) == camera.frame % phases;
+    sideGathered.list[index] = packLight(lightOf(last), float(due ? min(updates + 1, most) : updates));
     return due;
 }
 

@@ -6,6 +6,7 @@
 #include "gather/emitters.glsl"
 #include "common/ggx.glsl"
 #include "common/pattern.glsl"
+#include "history/rounds.glsl"
 
 // Index of a point in the pixel's pattern. Points of one pixel are far apart, and so are points of
 // neighbours.
@@ -13,8 +14,9 @@ uint pointIndex(int i) {
     return uint(i) * 64u + patternIndex(uvec2(pixelCentre()));
 }
 
+// Each round shifts all points.
 vec2 pixelPoint(int i) {
-    return r2(pointIndex(i));
+    return r2(pointIndex(i), fract(0.5 + float(pixelRound()) * vec2(0.6180339887, 0.4142135624)));
 }
 
 // Shift of the points in the lobe and on emitters per block, which turns their bias into noise. Diffuse

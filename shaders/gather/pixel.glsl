@@ -2,11 +2,13 @@
 #include "gbuffer/read.glsl"
 #include "modules/trace.glsl"
 
-uniform writeonly image2D gatheredDiffuse; // mean radiance over the hemisphere; a: openness
-// Radiance towards the viewer; a: age [frames].
-#ifdef READS_AGE
+// gatheredDiffuse: mean radiance over the hemisphere; a: openness. gatheredSpecular: radiance towards the
+// viewer; a: age and rounds, see history/rounds.glsl.
+#ifdef READS_HISTORY
+layout(rgba16f) uniform image2D gatheredDiffuse;
 layout(rgba16f) uniform image2D gatheredSpecular;
 #else
+uniform writeonly image2D gatheredDiffuse;
 uniform writeonly image2D gatheredSpecular;
 #endif
 

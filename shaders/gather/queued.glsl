@@ -1,10 +1,11 @@
 // Gathers the light of the queued pixels. Several threads share the rays of a pixel; neighbouring threads
 // take the same ray of different pixels.
 #include "params.glsl"
-#define READS_AGE
+#define READS_HISTORY
 #include "gather/queue.glsl"
 #include "gather/pixel.glsl"
 #include "shade/demodulate.glsl"
+#include "history/rounds.glsl"
 
 const uint GATHER_THREADS = 4; // per pixel
 
@@ -46,8 +47,13 @@ void gatherQueued(uint word, bool gathers) {
         light.hemisphere += shared_hemisphere[i][lane];
         light.specular += shared_specular[i][lane];
     }
+    vec4 last = imageLoad(gatheredSpecular, gathering);
+    float weight = mode == GATHER_ALL ? weightOfRound(uint(last.a) / AGES) : 1.0;
+    if (weight < 1.0) light.hemisphere = mix(imageLoad(gatheredDiffuse, gathering), light.hemisphere, weight);
+    // Reflections change with the view.
+    if (weight < 1.0 && cameraIsStill()) light.specular = mix(last.rgb, light.specular, weight);
     if (rays > 0) imageStore(gatheredDiffuse, gathering, light.hemisphere);
-    imageStore(gatheredSpecular, gathering, vec4(light.specular, imageLoad(gatheredSpecular, gathering).a));
+    imageStore(gatheredSpecular, gathering, vec4(light.specular, last.a));
 }
 
 void main() {

@@ -7,13 +7,13 @@
 #include "common/ggx.glsl"
 #include "gbuffer/read.glsl"
 #include "common/pattern.glsl"
+#include "history/rounds.glsl"
 
 // Fraction of an age that marks disoccluded pixels, which have few samples. Other ages are whole frames.
 const float FEW_RAYS_AGE = 0.5;
 
-// Updates of all voxels without a change until their light counts as converged. If half the light is
-// reflected, less than 1% is missing.
-const int CONVERGED_UPDATES = 8;
+// Most rounds in the mean of a pixel under a moving camera, whose history drifts.
+const uint MOVING_ROUNDS = 4;
 
 struct Age {
     float frames;
@@ -27,12 +27,19 @@ float ageInPhase(uint index) {
     return float(phases - (phase + phases - camera.frame % phases) % phases);
 }
 
+// Most rounds that enter a pixel's mean after its first.
+uint mostAveraged() {
+    if (pixelRound() == 0) return 0;
+    uint rounds = uint(params.accumulation_rounds);
+    return (cameraIsStill() ? rounds : min(rounds, MOVING_ROUNDS)) - 1;
+}
+
 // Whether light ages in this frame. While the camera moves, converged light ages in one of gather_rest
 // frames, or more often if the view direction turns fast relative to the surface's lobe.
 bool ages(GBufferSurface seen, uint index, bool few_rays) {
     // One more round of all phases: by then each pixel has gathered the converged light.
-    bool converged = camera.still_frames > uint(CONVERGED_UPDATES * params.bounce_frames + params.phases);
-    if (few_rays || !converged || camera.view_projection == camera.previous_view_projection) return true;
+    bool converged = camera.still_frames > pixelMeanStart();
+    if (few_rays || !converged || cameraIsStill()) return true;
     vec3 previous_to_viewer = normalize(camera.previous_position - seen.position);
     float turned = distance(seen.to_viewer, previous_to_viewer) * float(params.phases);
     float alpha = ggxAlpha(seen.surface.roughness);

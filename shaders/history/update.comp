@@ -10,7 +10,7 @@
 uniform writeonly image2D gatheredDiffuse;
 uniform writeonly image2D gatheredSpecular;
 
-// Smoother surfaces gather their reflection in every frame: mirrors show motion.
+// Smoother surfaces gather their reflection in every frame until it is averaged: mirrors show motion.
 const float MIRROR_ROUGHNESS = 0.1;
 
 // Stores the history of a pixel and its age. Returns how the pixel gathers. index: in the 8x8 tile.
@@ -25,19 +25,24 @@ uint updateHistory(ivec2 pixel, uint index) {
     bool reprojected = reproject(seen, at);
     Age age = newAge(index);
     vec4 last = vec4(0.0);
+    uint averaged = 0, most = mostAveraged();
     if (reprojected) {
         last = texelFetch(lastSpecular, at, 0);
-        age = nextAge(seen, index, last.a);
+        averaged = min(uint(last.a) / AGES, most);
+        age = nextAge(seen, index, mod(last.a, float(AGES)));
+        imageStore(gatheredDiffuse, pixel, texelFetch(lastDiffuse, at, 0));
     }
+    bool averages = most > 0 && cameraIsStill();
     if (age.due) {
-        imageStore(gatheredSpecular, pixel, vec4(0.0, 0.0, 0.0, gatheredAge(index)));
-        return GATHER_ALL;
+        bool complete = averages && averaged == most;
+        // Few rays do not count as a round.
+        if (reprojected && fract(last.a) == 0.0) averaged = min(averaged + 1, most);
+        imageStore(gatheredSpecular, pixel, vec4(last.rgb, AGES * averaged + gatheredAge(index)));
+        return complete ? GATHER_NOTHING : GATHER_ALL;
     }
-    imageStore(gatheredSpecular, pixel, vec4(last.rgb, age.frames));
+    imageStore(gatheredSpecular, pixel, vec4(last.rgb, AGES * averaged + age.frames));
     if (!reprojected) return GATHER_FEW;
-    imageStore(gatheredDiffuse, pixel, texelFetch(lastDiffuse, at, 0));
-    bool mirrors = seen.surface.roughness < MIRROR_ROUGHNESS;
-    return mirrors ? GATHER_MIRRORED : GATHER_NOTHING;
+    return seen.surface.roughness < MIRROR_ROUGHNESS && !averages ? GATHER_MIRRORED : GATHER_NOTHING;
 }
 
 void main() {

@@ -61,10 +61,13 @@ impl Workbench {
         let frame = slowest.map_or((0, 0), |p| (p.asked.saturating_sub(p.left), p.asked));
         let converging = || {
             finished.map(|since| {
-                (
-                    format!("Converging, frame {} of {}", frame.0, frame.1),
-                    since,
-                )
+                let text = match frame {
+                    (done, asked) if done < asked => {
+                        format!("Converging, frame {done} of {asked}")
+                    }
+                    _ => "Refining".into(),
+                };
+                (text, since)
             })
         };
         of(0)

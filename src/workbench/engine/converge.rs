@@ -1,6 +1,6 @@
 //! How many frames each side needs until its picture has converged.
 
-use super::Run;
+use super::{Run, Side};
 use super::report::Report;
 use crate::lab::LabError;
 use crate::workbench::desired::request::RenderRequest;
@@ -51,14 +51,17 @@ impl Run<'_> {
         let (fresh, changed) =
             session.map_or((1, 1), |s| (s.converging_frames(), s.frames_after_change()));
         let count = |frames: usize| u32::try_from(frames).unwrap_or(u32::MAX);
-        let frames = match need {
-            Need::Frames(least) if !side.fresh => least,
-            Need::Frames(least) => least.max(count(fresh)),
-            Need::Light if !side.fresh => count(changed),
-            Need::View | Need::Light => count(fresh),
+        let (fresh, changed) = (count(fresh), count(changed));
+        let (frames, refines) = match need {
+            Need::Frames(least) if !side.fresh => (least, 0),
+            Need::Light if !side.fresh => (changed, 0),
+            Need::Frames(least) => (least.max(fresh), changed.saturating_sub(fresh)),
+            Need::View | Need::Light => (fresh, changed.saturating_sub(fresh)),
         };
-        if frames >= side.frames_left {
-            (side.frames_left, side.frames_asked) = (frames, frames);
+        if frames >= side.converging_left() {
+            side.frames_asked = frames;
+            side.frames_left = side.frames_left.max(frames.saturating_add(refines));
+            side.refining = side.frames_left - frames;
         }
         side.least_left = side.least_left.max(if let Need::Frames(least) = need {
             least
@@ -105,14 +108,28 @@ impl Run<'_> {
             let side = &mut self.sides[number];
             (side.fresh, side.lights) = (true, true);
             // An earlier count started from histories that are now cleared.
-            (side.frames_left, side.least_left) = (0, 0);
+            (side.frames_left, side.refining, side.least_left) = (0, 0, 0);
         }
         self.out.send(Report::Restarted);
         self.request_frames(Need::Light);
-        let most = self.sides[0].frames_left.max(self.sides[1].frames_left);
+        let most = |frames: fn(&Side) -> u32| self.sides.iter().map(frames).max().unwrap_or(0);
+        let (left, refining) = (most(Side::converging_left), most(|s| s.refining));
         for side in &mut self.sides {
-            (side.frames_left, side.frames_asked, side.least_left) = (most, most, most);
+            (side.frames_left, side.refining) = (left.saturating_add(refining), refining);
+            (side.frames_asked, side.least_left) = (left, left);
         }
         Ok(())
+    }
+}
+
+impl Side {
+    /// Frames until the picture has converged. It may be refined for more frames.
+    pub(super) fn converging_left(&self) -> u32 {
+        self.frames_left.saturating_sub(self.refining)
+    }
+
+    /// Whether the picture is to be measured: it has just converged, or does not change any more.
+    pub(super) fn is_complete(&self) -> bool {
+        self.frames_left == 0 || self.frames_left == self.refining
     }
 }

@@ -3,7 +3,7 @@
 use super::converge::Need;
 use super::renderdoc;
 use super::report::{PictureReport, Report};
-use super::{LONG, Run, Submitted};
+use super::{LONG, Run, Side, Submitted};
 use crate::graph::run::FrameTimes;
 use crate::lab::LabError;
 use crate::workbench::desired::request::LightState;
@@ -42,7 +42,11 @@ impl Run<'_> {
             }
         }
         self.waited = false;
-        Ok(())
+        let begins_to_refine = |s: &Side| s.refining > 0 && s.frames_left == s.refining;
+        match self.sides.iter().any(begins_to_refine) {
+            true => self.pay_pixels(),
+            false => Ok(()),
+        }
     }
 
     /// Whether the window has not taken the last pictures yet, and none is awaited to settle:
@@ -107,7 +111,7 @@ impl Run<'_> {
         }
         // Long frames gain nothing from another one ahead, and an edit would wait for it; a still
         // picture must not wait for the next change.
-        let waits = side.frames_left == 0 || captured.is_some() || self.waited;
+        let waits = side.is_complete() || captured.is_some() || self.waited;
         let ahead = u64::from(!(software || side.last_ms > LONG || waits));
         let Some(session) = &mut side.session else {
             return Ok(());
@@ -160,7 +164,7 @@ impl Run<'_> {
                 preview: side.preview,
                 frame: submitted.frame,
                 finished: Instant::now(),
-                left: side.frames_left,
+                left: side.converging_left(),
                 asked: side.frames_asked,
                 time: submitted.time,
                 size: submitted.size.into(),
@@ -183,7 +187,8 @@ impl Run<'_> {
     pub(super) fn pay_pixels(&mut self) -> Result<(), LabError> {
         for number in 0..2 {
             let side = &mut self.sides[number];
-            let Some(session) = side.session.as_mut().filter(|_| side.frames_left == 0) else {
+            let complete = side.is_complete();
+            let Some(session) = side.session.as_mut().filter(|_| complete) else {
                 continue;
             };
             let Some(frame) = side.owes.take() else {
@@ -203,12 +208,12 @@ impl Run<'_> {
     /// Reads back the content for panes: at once if nothing changes, else several times a second.
     fn read_back(&mut self, number: usize) -> Result<(), LabError> {
         let side = &mut self.sides[number];
+        let complete = side.is_complete();
         let Some(session) = side.session.as_mut().filter(|_| !side.preview) else {
             return Ok(());
         };
-        let now =
-            side.frames_left == 0 || self.last_read_back.elapsed() > Duration::from_millis(150);
-        let small = side.frames_left == 0 || self.last_thumbnails.elapsed() > THUMBNAILS;
+        let now = complete || self.last_read_back.elapsed() > Duration::from_millis(150);
+        let small = complete || self.last_thumbnails.elapsed() > THUMBNAILS;
         let asked = self.desired.read_back.iter();
         for asked in asked.filter(|asked| asked.side() == number) {
             let (due, last) = match asked {
@@ -229,7 +234,7 @@ impl Run<'_> {
     /// Asks the graph's checks once for each build.
     fn check(&mut self, number: usize) -> Result<(), LabError> {
         let side = &mut self.sides[number];
-        if side.frames_left > 0 || side.preview || side.checked == side.key {
+        if !side.is_complete() || side.preview || side.checked == side.key {
             return Ok(());
         }
         side.checked.clone_from(&side.key);

@@ -217,8 +217,10 @@ struct Side {
     last_ms: f64,
     /// The last request that the session, or the failure to build one, answers.
     answered: u64,
-    /// Frames still to render until its picture has converged.
+    /// Frames still to render.
     frames_left: u32,
+    /// The last ones of these, which refine a picture that has converged.
+    refining: u32,
     /// Frames among these that are rendered even if the picture has converged.
     least_left: u32,
     /// Remaining frames at the last request.

@@ -1,0 +1,48 @@
+// Progressive accumulation: once light has converged, and while nothing but the camera changes, each round of
+// gathering takes new directions and enters a running mean.
+#ifndef HISTORY_ROUNDS_GLSL
+#define HISTORY_ROUNDS_GLSL
+#include "common/scene.glsl"
+
+// Rounds of all voxels without a change until their light counts as converged. If half the light is
+// reflected, less than 1% is missing.
+const uint CONVERGED_ROUNDS = 8;
+
+// A pixel stores its age and the rounds of its mean after the first as age + AGES * rounds, exact in a half
+// float.
+const uint AGES = 64;
+
+bool cameraIsStill() {
+    return camera.view_projection == camera.previous_view_projection;
+}
+
+// Frames without a change from which voxels average, and pixels, which see their light one round later.
+uint bounceMeanStart() {
+    return CONVERGED_ROUNDS * uint(params.bounce_frames) + uint(params.filter_frames);
+}
+
+uint pixelMeanStart() {
+    return bounceMeanStart() + uint(params.phases);
+}
+
+// Number of the directions of a round; 0 before light has converged.
+uint roundSince(uint start, uint frames) {
+    if (params.accumulation_rounds == 1 || camera.still_frames < start) return 0;
+    return (camera.still_frames - start) / frames + 1;
+}
+
+uint bounceRound() {
+    return roundSince(bounceMeanStart(), uint(params.bounce_frames));
+}
+
+uint pixelRound() {
+    return roundSince(pixelMeanStart(), uint(params.phases));
+}
+
+// Weight of a round after `averaged` others since the first. Later rounds have larger weights: the light
+// that they gather is a mean of more rounds itself.
+float weightOfRound(uint averaged) {
+    return 2.0 / float(averaged + 2);
+}
+
+#endif
