@@ -16,9 +16,22 @@ bool cameraIsStill() {
     return camera.view_projection == camera.previous_view_projection;
 }
 
-// Frames without a change from which voxels average, and pixels, which see their light one round later.
+// Short rounds of a voxel side, which extrapolate. More make the first frames of bright rooms better and cost
+// more.
+const uint SHORT_ROUNDS = 8;
+
+// Frames of a short round. A quarter of a long one: no frame gathers from more than a quarter of the bricks.
+uint shortRound() {
+    return (uint(params.bounce_frames) + 3) / 4;
+}
+
+// Frames without a change from which voxels average, and pixels, which see their light one round later. Short
+// rounds are sooner there.
 uint bounceMeanStart() {
-    return CONVERGED_ROUNDS * uint(params.bounce_frames) + uint(params.filter_frames);
+    uint frames = uint(params.bounce_frames);
+    bool begins = camera.still_frames + 1 >= camera.frame;
+    return (begins ? SHORT_ROUNDS * shortRound() + frames : CONVERGED_ROUNDS * frames)
+        + uint(params.filter_frames);
 }
 
 uint pixelMeanStart() {
@@ -37,6 +50,11 @@ uint bounceRound() {
 
 uint pixelRound() {
     return roundSince(pixelMeanStart(), uint(params.phases));
+}
+
+// Most updates of a voxel side: the short rounds, then those that enter the mean.
+uint mostUpdates() {
+    return SHORT_ROUNDS + (bounceRound() > 0 ? uint(params.accumulation_rounds) - 1 : 0);
 }
 
 // Weight of a round after `averaged` others since the first. Later rounds have larger weights: the light
