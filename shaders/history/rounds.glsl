@@ -18,7 +18,7 @@ bool cameraIsStill() {
 
 // Short rounds of a voxel side, which extrapolate. More make the first frames of bright rooms better and cost
 // more.
-const uint SHORT_ROUNDS = 8;
+const uint SHORT_ROUNDS = 12;
 
 // Frames of a short round. A quarter of a long one: no frame gathers from more than a quarter of the bricks.
 uint shortRound() {
@@ -57,10 +57,11 @@ uint mostUpdates() {
     return SHORT_ROUNDS + (bounceRound() > 0 ? uint(params.accumulation_rounds) - 1 : 0);
 }
 
-// Weight of a round after `averaged` others since the first. Later rounds have larger weights: the light
-// that they gather is a mean of more rounds itself.
+// Weight of a round after `averaged` others since the first. The sums of weights grow with the cube of the
+// rounds: what bounces still lacked when the mean began fades sooner than from an even mean, at 1.8 times the
+// variance.
 float weightOfRound(uint averaged) {
-    return 2.0 / float(averaged + 2);
+    return 3.0 / float(averaged + 3);
 }
 
 #endif
