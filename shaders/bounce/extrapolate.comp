@@ -13,17 +13,31 @@
 
 layout(local_size_x = SUM_THREADS) in;
 
+// Share of the balance, so that no frame is too bright. The next round adds the rest.
+const float CAUTION = 0.95;
+
+// Least fraction of the light that a round loses. Few directions gain up to 0.5 % a bounce. Each frame of a
+// round reflects the light of the frames before it.
+vec3 leastLoss(vec3 reflectance) {
+    reflectance = clamp(reflectance + 0.005, 0.0, 0.999);
+    uint frames = shortRound();
+    vec3 light = vec3(1.0), sum = vec3(0.0);
+    for (uint i = 1; i <= frames; i++) {
+        sum += float(i) * light;
+        light *= 1.0 + reflectance / float(frames);
+    }
+    return (1.0 - reflectance) * sum * 2.0 / float(frames * (frames + 1));
+}
+
 // s - 1.
 vec3 gainOf(BounceSums now, uint round) {
     BounceState last = lastRounds.state;
     if (round < 2) return vec3(0.0);
-    // A round keeps at most the reflected fraction, and a few directions gain up to 1 % more. Within a round
-    // of N frames, light is reflected up to 2 N / (N + 1) times.
-    float frames = float(shortRound());
-    vec3 reflectance = clamp(now.reflected / max(now.light, 1e-20) + 0.01, 0.0, 0.999);
-    vec3 least = (1.0 - pow(reflectance, vec3(2.0 * frames / (frames + 1.0)))) * last.light;
+    vec3 least = leastLoss(now.reflected / max(now.light, 1e-20)) * last.light;
     vec3 lost = max(last.first - (now.light - last.light), least);
-    return mix(vec3(0.0), last.first / max(lost, 1e-20) - 1.0, greaterThan(last.first, vec3(1e-20)));
+    vec3 gain = last.first / max(lost, 1e-20) - 1.0;
+    gain *= mix(vec3(1.0), vec3(CAUTION), greaterThan(gain, vec3(0.0)));
+    return mix(vec3(0.0), gain, greaterThan(last.first, vec3(1e-20)));
 }
 
 void main() {

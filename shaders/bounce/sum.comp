@@ -11,12 +11,15 @@
 
 layout(local_size_x = SUM_THREADS) in;
 
-// Area of a side [m2]. Mirrored sides count 0: the inside of a solid has no part in the balance.
-float areaOf(uint surfel, uint side) {
+// Weight of a side in the balance: its area, times the frames of a round that read its light before it
+// gathers. Mirrored sides count 0: the inside of a solid has no part in the balance.
+float weightOf(uint surfel, uint side) {
     ivec3 cell = cellOfSurfel(surfel);
+    uint phase = phaseOf(uvec3(cell) >> 2, shortRound());
     VolumeMap map = volume.maps[cascadeOf(cell)];
     float cubed = abs(determinant(cellAxes(map, volumeToWorld(map, cellCentre(cell)))));
-    return float(surfelSums.words[sideBase(surfel, side) + 3]) * pow(cubed, 2.0 / 3.0);
+    float area = float(surfelSums.words[sideBase(surfel, side) + 3]) * pow(cubed, 2.0 / 3.0);
+    return area * float(phase == 0 ? shortRound() : phase);
 }
 
 void main() {
@@ -26,7 +29,7 @@ void main() {
         SideLight g = sideLightOf(sideGathered.list[i]);
         uint surfel = i / SIDES, side = i % SIDES;
         if (axisOfSurfel(surfel) < 0 || g.updates != round) continue;
-        vec3 light = areaOf(surfel, side) * g.light;
+        vec3 light = weightOf(surfel, side) * g.light;
         vec3 reflected = sideOfSurfel(surfel, side).color * light;
         sums = plus(sums, BounceSums(light, (1.0 - g.first) * light, reflected));
     }

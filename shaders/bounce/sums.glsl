@@ -2,7 +2,7 @@
 #ifndef BOUNCE_SUMS_GLSL
 #define BOUNCE_SUMS_GLSL
 
-// Sums of one group, weighted by area.
+// Weighted sums of one group.
 struct BounceSums {
     vec3 light;
     vec3 bounced; // without the light of the first update
