@@ -31,21 +31,19 @@ Filtered unfiltered(ivec2 pixel) {
 Filtered filtered(ivec2 pixel, GBufferSurface seen) {
     vec4 diffuse = vec4(0.0);
     vec3 specular = vec3(0.0);
-    float weights = 0.0, specular_weights = 0.0, lobe = reflectionBlur(seen);
-    EdgeStop stop = edgeStopOf(seen);
+    float diffuse_weights = 0.0, specular_weights = 0.0;
+    EdgeStop stop = edgeStopOf(pixel, seen);
     for (int i = 0; i < 4; i++) {
         ivec2 at = pixel + ivec2(i & 1, i >> 1);
-        bool self = at == pixel;
-        float weight = self ? 1.0 : edgeStoppingWeight(at, stop);
-        diffuse += weight * texelFetch(smoothedDiffuse, at, 0);
-        weights += weight;
-        weight *= self ? 1.0 : lobe;
-        specular += weight * texelFetch(smoothedSpecular, at, 0).rgb;
-        specular_weights += weight;
+        FilterWeights weights = filterWeights(at, stop);
+        diffuse += weights.diffuse * texelFetch(smoothedDiffuse, at, 0);
+        specular += weights.specular * texelFetch(smoothedSpecular, at, 0).rgb;
+        diffuse_weights += weights.diffuse;
+        specular_weights += weights.specular;
     }
     vec3 reflectance = max(lobeReflectance(seen.surface, seen.to_viewer), MIN_REFLECTANCE);
     specular *= reflectance / max(specular_weights, 1e-6);
-    return Filtered(diffuse / max(weights, 1e-6), specular);
+    return Filtered(diffuse / max(diffuse_weights, 1e-6), specular);
 }
 
 void main() {

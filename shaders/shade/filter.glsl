@@ -1,28 +1,45 @@
-// Edge-stopping weights of the filter over gathered light.
+// Weights of the filter over gathered light. Reflections are averaged over pixels whose lobes point the same
+// way: over the whole block on rough surfaces, over no other pixel on mirrors.
 #ifndef SHADE_FILTER_GLSL
 #define SHADE_FILTER_GLSL
+#include "common/ggx.glsl"
 
 struct Filtered {
     vec4 hemisphere; // rgb: mean radiance over the hemisphere, cosine-weighted; a: openness
     vec3 specular; // radiance towards the viewer
 };
 
+// Weights of another pixel's light: 1 if both pixels see one surface.
+struct FilterWeights {
+    float diffuse;
+    float specular;
+};
+
 // Surface of the filtered pixel, prepared for comparison with other pixels.
 struct EdgeStop {
+    ivec2 pixel;
     vec2 origin, step; // map pixels to rays: tangents of their angles
     vec3 plane; // the surface's normal in view space
     float away; // signed distance of the plane from the camera [m]
     float scale; // of the distance between a surface and the plane [1/m]
     vec3 normal;
+    float narrow; // of the squared angle between reflected directions, relative to the lobe [1/rad^2]
+    float turn; // squared angle between the rays of neighbouring pixels, times narrow
 };
 
-EdgeStop edgeStopOf(GBufferSurface seen) {
+// Angle between reflected directions at which the weight falls to a half, as a multiple of the lobe's alpha.
+// Larger values blur reflections, smaller ones keep their noise.
+const float LOBE_FRACTION = 0.5;
+
+EdgeStop edgeStopOf(ivec2 pixel, GBufferSurface seen) {
     vec2 zoom = 1.0 / vec2(camera.projection[0][0], camera.projection[1][1]);
     vec2 step = 2.0 * zoom / vec2(camera.size);
     vec3 off = seen.position - camera.position;
     vec3 plane = mat3(camera.view) * seen.face;
     float away = dot(off, seen.face), scale = 200.0 / length(off);
-    return EdgeStop(0.5 * step - zoom, step, plane, away, scale, seen.surface.normal);
+    float width = LOBE_FRACTION * ggxAlpha(seen.surface.roughness), narrow = 1.0 / (width * width);
+    return EdgeStop(pixel, 0.5 * step - zoom, step, plane, away, scale, seen.surface.normal, narrow,
+        0.5 * narrow * dot(step, step));
 }
 
 // Normal and distance [m] of the surface at a pixel. The distance is 0 outside the image and for the sky.
@@ -31,19 +48,17 @@ vec4 seenAt(ivec2 at) {
     return vec4(unpackNormal(texelFetch(gbufferNormals, at, 0).xy), texelFetch(gbufferDistance, at, 0).r);
 }
 
-// Weight of another pixel's light: 1 if both pixels see one surface.
-float edgeStoppingWeight(ivec2 at, EdgeStop stop) {
+FilterWeights filterWeights(ivec2 at, EdgeStop stop) {
+    if (at == stop.pixel) return FilterWeights(1.0, 1.0);
     vec4 other = seenAt(at);
-    if (other.w <= 0.0) return 0.0;
-    vec2 ray = stop.origin + vec2(at) * stop.step;
+    if (other.w <= 0.0) return FilterWeights(0.0, 0.0);
+    vec2 ray = stop.origin + vec2(at) * stop.step, apart = vec2(at - stop.pixel);
     float away = other.w * inversesqrt(dot(ray, ray) + 1.0) * (dot(ray, stop.plane.xy) - stop.plane.z);
     float off = abs(away - stop.away), cosine = abs(dot(other.xyz, stop.normal));
-    return clamp(5.0 * cosine - 3.8, 0.0, 1.0) * clamp(2.0 - stop.scale * off, 0.0, 1.0);
-}
-
-// Weight of other pixels' reflections: 0 for mirrors, which must stay sharp.
-float reflectionBlur(GBufferSurface seen) {
-    return smoothstep(0.05, 0.25, seen.surface.roughness);
+    float same = clamp(5.0 * cosine - 3.8, 0.0, 1.0) * clamp(2.0 - stop.scale * off, 0.0, 1.0);
+    // A normal that turns by an angle turns its reflection by twice as much; 2 - 2 cos is the angle's square.
+    float turned = stop.turn * dot(apart, apart) + stop.narrow * 8.0 * max(1.0 - cosine, 0.0);
+    return FilterWeights(same, same * exp2(-turned));
 }
 
 #endif

@@ -22,20 +22,18 @@ void main() {
         imageStore(smoothedSpecular, pixel, vec4(0.0));
         return;
     }
-    EdgeStop stop = edgeStopOf(seen);
+    EdgeStop stop = edgeStopOf(pixel, seen);
     vec4 diffuse = vec4(0.0);
     vec3 specular = vec3(0.0);
-    float weights = 0.0, specular_weights = 0.0, lobe = reflectionBlur(seen);
+    float diffuse_weights = 0.0, specular_weights = 0.0;
     for (int i = 0; i < 16; i++) {
         ivec2 at = pixel + 2 * (ivec2(i & 3, i >> 2) - 2);
-        bool self = at == pixel;
-        float weight = self ? 1.0 : edgeStoppingWeight(at, stop);
-        diffuse += weight * texelFetch(gatheredDiffuse, at, 0);
-        weights += weight;
-        weight *= self ? 1.0 : lobe;
-        specular += weight * texelFetch(gatheredSpecular, at, 0).rgb;
-        specular_weights += weight;
+        FilterWeights weights = filterWeights(at, stop);
+        diffuse += weights.diffuse * texelFetch(gatheredDiffuse, at, 0);
+        specular += weights.specular * texelFetch(gatheredSpecular, at, 0).rgb;
+        diffuse_weights += weights.diffuse;
+        specular_weights += weights.specular;
     }
-    imageStore(smoothedDiffuse, pixel, diffuse / weights);
+    imageStore(smoothedDiffuse, pixel, diffuse / diffuse_weights);
     imageStore(smoothedSpecular, pixel, vec4(specular / specular_weights, 1.0));
 }
