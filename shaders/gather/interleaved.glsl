@@ -7,6 +7,7 @@
 #include "common/ggx.glsl"
 #include "common/pattern.glsl"
 #include "history/rounds.glsl"
+#include "shade/lobe_filter.glsl"
 
 // Index of a point in the pixel's pattern. Points of one pixel are far apart, and so are points of
 // neighbours.
@@ -34,12 +35,24 @@ float largest(vec3 v) {
     return max(v.r, max(v.g, v.b));
 }
 
+// Samples of a reflection, over all pixels that the filter averages, and the most rays of a pixel to get them.
+const float REFLECTION_SAMPLES = 16.0;
+const int SHARP_RAYS = 4;
+
+// Least number of rays into the specular lobe. Only sharp reflections take more than one, because the filter
+// averages them over few pixels.
+int leastSpecularRays(Surface s) {
+    float pixels = max(reflectionPixels(s), 1.0);
+    return clamp(int(ceil(REFLECTION_SAMPLES / pixels)), 1, SHARP_RAYS);
+}
+
 // Number of rays into the specular lobe: lobe_share of the hemisphere's rays, scaled by the lobe's share of
 // the surface's reflectance.
 int specularRays(Surface s, vec3 v) {
     float mirrored = largest(fresnel(s, max(dot(s.normal, v), 0.0)));
     float share = mirrored / (mirrored + largest(s.albedo));
-    return clamp(int(ceil(params.lobe_share * share * float(gatherShare.rays))), 1, max(gatherShare.rays, 1));
+    int rays = min(int(ceil(params.lobe_share * share * float(gatherShare.rays))), gatherShare.rays);
+    return max(rays, leastSpecularRays(s));
 }
 
 #include "gather/resample_emitters.glsl"

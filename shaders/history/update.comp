@@ -10,7 +10,7 @@
 uniform writeonly image2D gatheredDiffuse;
 uniform writeonly image2D gatheredSpecular;
 
-// Smoother surfaces gather their reflection in every frame until it is averaged: mirrors show motion.
+// Smoother surfaces gather their reflection in every frame with motion, of the camera or in the scene.
 const float MIRROR_ROUGHNESS = 0.1;
 
 // Stores the history of a pixel and its age. Returns how the pixel gathers. index: in the 8x8 tile.
@@ -32,9 +32,8 @@ uint updateHistory(ivec2 pixel, uint index) {
         age = nextAge(seen, index, mod(last.a, float(AGES)));
         imageStore(gatheredDiffuse, pixel, texelFetch(lastDiffuse, at, 0));
     }
-    bool averages = most > 0 && cameraIsStill();
     if (age.due) {
-        bool complete = averages && averaged == most;
+        bool complete = most > 0 && averaged == most && cameraIsStill();
         // Few rays do not count as a round.
         if (reprojected && fract(last.a) == 0.0) averaged = min(averaged + 1, most);
         imageStore(gatheredSpecular, pixel, vec4(last.rgb, AGES * averaged + gatheredAge(index)));
@@ -42,7 +41,9 @@ uint updateHistory(ivec2 pixel, uint index) {
     }
     imageStore(gatheredSpecular, pixel, vec4(last.rgb, AGES * averaged + age.frames));
     if (!reprojected) return GATHER_FEW;
-    return seen.surface.roughness < MIRROR_ROUGHNESS && !averages ? GATHER_MIRRORED : GATHER_NOTHING;
+    bool moves = camera.still_frames == 0 || !cameraIsStill();
+    bool mirrors = seen.surface.roughness < MIRROR_ROUGHNESS;
+    return moves && mirrors ? GATHER_MIRRORED : GATHER_NOTHING;
 }
 
 void main() {

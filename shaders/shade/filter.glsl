@@ -2,7 +2,7 @@
 // way: over the whole block on rough surfaces, over no other pixel on mirrors.
 #ifndef SHADE_FILTER_GLSL
 #define SHADE_FILTER_GLSL
-#include "common/ggx.glsl"
+#include "shade/lobe_filter.glsl"
 
 struct Filtered {
     vec4 hemisphere; // rgb: mean radiance over the hemisphere, cosine-weighted; a: openness
@@ -27,19 +27,15 @@ struct EdgeStop {
     float turn; // squared angle between the rays of neighbouring pixels, times narrow
 };
 
-// Angle between reflected directions at which the weight falls to a half, as a multiple of the lobe's alpha.
-// Larger values blur reflections, smaller ones keep their noise.
-const float LOBE_FRACTION = 0.5;
-
 EdgeStop edgeStopOf(ivec2 pixel, GBufferSurface seen) {
     vec2 zoom = 1.0 / vec2(camera.projection[0][0], camera.projection[1][1]);
     vec2 step = 2.0 * zoom / vec2(camera.size);
     vec3 off = seen.position - camera.position;
     vec3 plane = mat3(camera.view) * seen.face;
     float away = dot(off, seen.face), scale = 200.0 / length(off);
-    float width = LOBE_FRACTION * ggxAlpha(seen.surface.roughness), narrow = 1.0 / (width * width);
+    float narrow = 1.0 / reflectionWidth2(seen.surface);
     return EdgeStop(pixel, 0.5 * step - zoom, step, plane, away, scale, seen.surface.normal, narrow,
-        0.5 * narrow * dot(step, step));
+        narrow * pixelAngle2());
 }
 
 // Normal and distance [m] of the surface at a pixel. The distance is 0 outside the image and for the sky.
