@@ -21,7 +21,8 @@ fn textures(group: &str) -> &'static [&'static str] {
         "Voxels" => &["voxelColor", "voxelNormal"],
         "Radiance" => &["voxelRadiance", "diffuseIndirect"],
         "Shading" => &["direct"],
-        "Diffuse cones" | "Tracing" | "Rays" => &["diffuseIndirect"],
+        "Diffuse cones" | "Tracing" => &["diffuseIndirect"],
+        "Rays" => &["diffuseIndirect", "specularIndirect"],
         "Specular cone" => &["specularIndirect"],
         "Display" | "Probe" => &["display"],
         other => panic!("no texture is known for the group '{other}'"),
@@ -123,7 +124,7 @@ impl Scenes {
 
     fn of(&self, name: &str) -> PathBuf {
         match name {
-            "specular_steps" => self.folder.path().join("metal.ron"),
+            "specular_steps" | "triangle_rays" => self.folder.path().join("metal.ron"),
             "shadow_maps" => "plain".into(),
             _ => root().join("configs/scenes/workshop.ron"),
         }

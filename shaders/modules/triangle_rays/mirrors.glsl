@@ -1,8 +1,8 @@
 // Rays into narrow lobes hit triangles; others hit voxels.
 #include "surfels/triangles.glsl"
 
-// Widest lobe whose rays hit triangles, as the tangent of a ray's share: roughness 0.3.
-const float WIDEST_MIRROR = 0.25 * 0.09;
+// Widest lobe whose rays hit triangles, as the tangent of a ray's share: just above a roughness of 0.3.
+const float WIDEST_MIRROR = 0.025;
 
 // tan_lobe is 0 for rays that do not reflect.
 vec4 traceSurfaces(ConeOrigin o, vec3 d, float tan_lobe, RayUse use) {
