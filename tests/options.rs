@@ -96,7 +96,8 @@ const SAME_PICTURE: [&str; 6] = [
 ];
 
 /// What two frames of a still picture do not show, and the test that does.
-const ELSEWHERE: [(&str, &str); 3] = [
+const ELSEWHERE: [(&str, &str); 4] = [
+    ("accumulation_rounds", "turns.rs"),
     ("bounce_frames", "turns.rs"),
     ("gather_rest", "turns.rs"),
     ("temporal_cut", "volume.rs"),

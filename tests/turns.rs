@@ -304,3 +304,44 @@ fn a_moving_camera_keeps_light_where_it_belongs() {
         "settled light gets lost in motion: {errors:?}"
     );
 }
+
+/// A mean of new directions: less noise than one round, the same bits in each run, complete after its rounds, and
+/// gone with a change of the light.
+#[test]
+fn rounds_of_new_directions_are_averaged_while_nothing_changes() {
+    const ROUNDS: usize = 16;
+    let lab = lab(root());
+    let cornell = scene("cornell");
+    let settings = [
+        ("gather_frames", "2"),
+        ("bounce_frames", "1"),
+        ("accumulation_rounds", "16"),
+    ];
+    // Twelve short rounds of a frame, one long one, one of the pixels.
+    let start = 15;
+    let mut still = session(&lab, &cornell, &settings);
+    let one_round = gathered(&lab, &mut still, start);
+    let mean = gathered(&lab, &mut still, 2 * ROUNDS);
+    let many_rays = [("gather_frames", "1"), ("pixel_rays", "64")];
+    let truth = gathered(&lab, &mut session(&lab, &cornell, &many_rays), 1);
+    let (before, after) = (error(&one_round, &truth), error(&mean, &truth));
+    println!("error {before:.2e} after one round, {after:.2e} after {ROUNDS}");
+    assert!(after < 0.5 * before, "{after} of {before}");
+
+    gathered(&lab, &mut still, 2);
+    let complete = radiance(&mut still);
+    let frames = start + 2 * ROUNDS + 2;
+    let mut again = session(&lab, &cornell, &settings);
+    gathered(&lab, &mut again, frames);
+    assert_eq!(radiance(&mut again), complete, "another run");
+    gathered(&lab, &mut still, 8);
+    assert_eq!(radiance(&mut still), complete, "no round is left");
+
+    let mut lights = cornell.lights.clone();
+    for light in &mut lights {
+        light.color *= 0.5;
+    }
+    assert!(still.set_lights(&lights, 0.5 * cornell.sky));
+    let darker = light(&gathered(&lab, &mut still, 4)) / light(&one_round);
+    assert!((darker - 0.5).abs() < 0.002, "{darker} of the light");
+}
