@@ -171,14 +171,14 @@ fn bounces_converge_and_never_overshoot() {
     let dir = tempfile::tempdir().unwrap();
     let lab = lab(root());
     let mut wrong = Vec::new();
-    for (albedo, frames) in [(0.5, 48), (0.8, 48), (0.95, 128), (0.98, 128)] {
+    for (albedo, frames, converged) in [(0.8, 48, 32), (0.95, 128, 64), (0.98, 128, 96)] {
         for room in &ROOMS[2..] {
             let file = write(dir.path(), room, albedo);
             let mut at_once = session(&lab, &file, "1");
             at_once.run(1).unwrap();
             let areas = areas(&mut at_once);
             let first = light(&mut at_once, "sideRadiance", &areas);
-            let exact = first / (1.0 - albedo * kept(&mut at_once, &areas, 32));
+            let exact = first / (1.0 - albedo * kept(&mut at_once, &areas, converged));
             let mut session = session(&lab, &file, "16");
             let energy: Vec<f64> = (0..frames)
                 .map(|_| {
