@@ -221,7 +221,7 @@ const BY_RASTER: [(&str, &str); 3] = [
 fn pictures_are_the_same_whatever_is_edited() {
     let home = common::home();
     // So that what gathers rests now and then between two edits.
-    let bounces = "(8 + max(24, accumulation_rounds)) * bounce_frames + filter_frames";
+    let bounces = "max(32, 24 + accumulation_rounds) * bounce_frames + filter_frames";
     settles(home.path(), "bounces", bounces, "5");
     settles(home.path(), "shade", "phases + 1 + accumulation_frames", "3");
     let lab = lab(home.path());

@@ -17,7 +17,6 @@ layout(std430) readonly buffer LastBlocks { uvec4 list[]; } lastBlocks;
 #include "modules/bounce_trace.glsl"
 #include "surfels/trace.glsl"
 #include "bounce/gather.glsl"
-#include "bounce/gathered.glsl"
 #include "bounce/queue.glsl"
 #include "bounce/placed.glsl"
 #include "history/rounds.glsl"
@@ -53,8 +52,10 @@ void main() {
         barrier();
         if (part == 0 && start + lane < count) {
             for (uint k = 1; k < BOUNCE_THREADS; k++) light += shared_light[k][lane];
-            SideLight last = sideLightOf(sideGathered.list[index]);
-            sideGathered.list[index] = packSideLight(updated(last, light));
+            uvec2 last = sideGathered.list[index];
+            float updates = numberOf(last), averaged = max(updates - float(params.bounce_frames), 0.0);
+            light = mix(lightOf(last), light, weightOfRound(uint(averaged)));
+            sideGathered.list[index] = packLight(light, updates);
         }
         barrier();
     }

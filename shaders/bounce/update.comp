@@ -3,51 +3,42 @@
 // Reprojects the gathered light of voxel sides from the last frame, and queues the sides that gather again.
 #include "params.glsl"
 #include "bounce/reproject.glsl"
-#include "bounce/gathered.glsl"
-#include "bounce/rounds.glsl"
 #define QUEUE_WRITES
 #include "bounce/queue.glsl"
 #include "bounce/placed.glsl"
+#include "history/rounds.glsl"
 
 layout(local_size_x = 128) in;
 
 shared uint queued_here;
 shared uint first;
 
-// Largest move of a cascade in this frame, relative to its edge.
-float moved() {
-    float most = 0.0;
-    for (int k = 0; k < CASCADE_COUNT; k++) {
-        vec3 by = abs(placed.maps[k].minimum - volume.maps[k].minimum) / placed.maps[k].size;
-        by = max(by, abs(placed.maps[k].eye - volume.maps[k].eye) / placed.maps[k].size);
-        most = max(most, max(by.x, max(by.y, by.z)));
-    }
-    return most;
+// Interleaving phase of a brick. Its voxels gather together, neighbouring bricks in different frames.
+uint phaseOf(uvec3 brick) {
+    return (brick.x + 3u * brick.y + 5u * brick.z) % uint(params.bounce_frames);
 }
 
-// Starts again when all or most sides are new: rounds then spread their gathering over frames.
-BounceState nextState(bool has_history) {
-    BounceState next = lastRounds.state;
-    float move = has_history ? moved() : 1.0;
-    if (move > 0.5) return BounceState(vec3(0.0), 0, vec3(0.0), 1);
-    next.frame++;
-    if (move > 0.0 || camera.still_frames < next.frame) next.still = 0;
-    return next;
-}
-
-// Stores a side's history and returns whether the side gathers.
-bool updateHistory(uint surfel, uint side, bool has_history, uint frame) {
+// Stores a side's history and returns whether the side gathers: in its phase, and in every frame until it has
+// gathered once per phase, so that the first frames have light.
+bool updateHistory(uint surfel, uint side, bool has_history) {
     if (surfel >= voxelCounter.count || axisOfSurfel(surfel) < 0) return false;
-    uint index = sideIndex(surfel, side);
+    uint index = sideIndex(surfel, side), phases = uint(params.bounce_frames);
+    if (!has_history) {
+        sideGathered.list[index] = uvec2(0);
+        return false;
+    }
     ivec3 cell = cellOfSurfel(surfel);
     int cascade = cascadeOf(cell);
     vec3 p = volumeToWorld(placed.maps[cascade], cellCentre(cell));
-    uvec2 last = has_history ? reprojected(p, cascade, uint(axisOfSurfel(surfel)), side) : uvec2(0);
-    SideLight light = sideLightOf(last);
-    light.updates = min(light.updates, mostUpdates());
-    sideGathered.list[index] = packSideLight(light);
-    bool complete = light.updates > SHORT_ROUNDS && light.updates == mostUpdates();
-    return !complete && isDue(uvec3(cell) >> 2, light.updates, frame);
+    uvec2 last = reprojected(p, cascade, uint(axisOfSurfel(surfel)), side);
+    // Beyond `phases`, updates count the rounds that the mean has taken since its first.
+    bool averages = bounceRound() > 0;
+    uint most = phases + (averages ? uint(params.accumulation_rounds) - 1 : 0);
+    uint updates = min(uint(numberOf(last)), most);
+    bool complete = averages && updates == most;
+    bool due = updates < phases || !complete && phaseOf(uvec3(cell) >> 2) == camera.frame % phases;
+    sideGathered.list[index] = packLight(lightOf(last), float(due ? min(updates + 1, most) : updates));
+    return due;
 }
 
 // Appends the sides that are due to the queue. All threads of a group must call it.
@@ -64,17 +55,10 @@ void enqueue(bool due, uint i) {
 
 void main() {
     bool has_history = volume.signature == placed.signature;
-    BounceState state = nextState(has_history);
-    if (gl_GlobalInvocationID.x == 0) {
-        bool ends = state.frame % shortRound() == 0 && state.frame > 0
-            && state.frame <= SHORT_ROUNDS * shortRound();
-        bounceRounds.state = state;
-        bounceRounds.groups = uvec3(ends && state.still != 0 ? SUM_GROUPS : 0, 1, 1);
-    }
     uint count = voxelCounter.count * SIDES, stride = gl_NumWorkGroups.x * 128;
     for (uint start = gl_WorkGroupID.x * 128; start < count; start += stride) {
         uint i = start + gl_LocalInvocationIndex;
-        bool due = updateHistory(i / SIDES, i % SIDES, has_history, state.frame);
+        bool due = updateHistory(i / SIDES, i % SIDES, has_history);
         enqueue(due, i);
     }
 }

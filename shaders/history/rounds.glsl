@@ -16,22 +16,14 @@ bool cameraIsStill() {
     return camera.view_projection == camera.previous_view_projection;
 }
 
-// Short rounds of a voxel side, which extrapolate. More make the first frames of bright rooms better and cost
-// more.
-const uint SHORT_ROUNDS = 12;
-
-// Frames of a short round. A quarter of a long one: no frame gathers from more than a quarter of the bricks.
-uint shortRound() {
-    return (uint(params.bounce_frames) + 3) / 4;
-}
-
-// Frames without a change from which voxels average, and pixels, which see their light one round later. Short
-// rounds are sooner there.
+// Frames without a change from which voxels average, and pixels, which see their light one round later. A mean
+// that begins too early keeps too little light for long: if nine tenths are reflected, 12 % is missing after
+// 20 rounds. After a start the first rounds take a frame each.
 uint bounceMeanStart() {
     uint frames = uint(params.bounce_frames);
     bool begins = camera.still_frames + 1 >= camera.frame;
-    return (begins ? SHORT_ROUNDS * shortRound() + frames : CONVERGED_ROUNDS * frames)
-        + uint(params.filter_frames);
+    uint rounds = begins ? 1 + uint(max(20 - params.bounce_frames, 4)) : 24;
+    return rounds * frames + uint(params.filter_frames);
 }
 
 uint pixelMeanStart() {
@@ -50,11 +42,6 @@ uint bounceRound() {
 
 uint pixelRound() {
     return roundSince(pixelMeanStart(), uint(params.phases));
-}
-
-// Most updates of a voxel side: the short rounds, then those that enter the mean.
-uint mostUpdates() {
-    return SHORT_ROUNDS + (bounceRound() > 0 ? uint(params.accumulation_rounds) - 1 : 0);
 }
 
 // Weight of a round after `averaged` others since the first. The sums of weights grow with the cube of the

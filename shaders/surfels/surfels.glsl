@@ -92,7 +92,7 @@ uint sideIndex(uint surfel, uint side) {
     return surfel * SIDES + side;
 }
 
-// Packs outgoing radiance and its emitted share.
+// Packs light and a number: the updates of gathered light, or the emitted share of outgoing radiance.
 uvec2 packLight(vec3 light, float number) {
     light = min(light, 65504.0);
     return uvec2(packHalf2x16(light.rg), packHalf2x16(vec2(light.b, number)));
