@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 const SIZE: (u32, u32) = (72, 50); // no multiple of the pattern's eight
 const TURNS: usize = 8;
-/// Rounds are stored beside ages as multiples of this.
+/// A pixel stores its age, and this for each round of its mean.
 const AGES: f32 = 64.0;
 
 /// Rays of one bounce: nothing else takes more than a frame to settle.
@@ -326,13 +326,21 @@ fn rounds_of_new_directions_are_averaged_while_nothing_changes() {
     let mean = gathered(&lab, &mut still, 2 * ROUNDS);
     let many_rays = [
         ("gather_frames", "1"),
+        ("bounce_frames", "1"),
         ("pixel_rays", "64"),
         ("emitter_rays", "32"),
     ];
-    let truth = gathered(&lab, &mut session(&lab, &cornell, &many_rays), 1);
+    let mut truth = session(&lab, &cornell, &many_rays);
+    let single = gathered(&lab, &mut truth, 1);
+    let truth = gathered(&lab, &mut truth, start + 32);
     let (before, after) = (error(&one_round, &truth), error(&mean, &truth));
-    println!("error {before:.2e} after one round, {after:.2e} after {ROUNDS}");
-    assert!(after < 0.5 * before, "{after} of {before}");
+    println!("error {before:.4} after one round, {after:.4} after {ROUNDS}");
+    assert!(after < 0.3 * before, "{after} of {before}");
+    // The directions of one round have an error of their own: 1.2 % with 16 rays, 0.5 % with 64.
+    for (round, bound) in [(&single, 0.01), (&truth, 0.002)] {
+        let energy = light(&mean) / light(round);
+        assert!((energy - 1.0).abs() < bound, "energy {energy}");
+    }
 
     gathered(&lab, &mut still, 2);
     let complete = radiance(&mut still);
@@ -343,11 +351,9 @@ fn rounds_of_new_directions_are_averaged_while_nothing_changes() {
     gathered(&lab, &mut still, 8);
     assert_eq!(radiance(&mut still), complete, "no round is left");
 
-    let mut lights = cornell.lights.clone();
-    for light in &mut lights {
-        light.color *= 0.5;
-    }
-    assert!(still.set_lights(&lights, 0.5 * cornell.sky));
-    let darker = light(&gathered(&lab, &mut still, 4)) / light(&one_round);
-    assert!((darker - 0.5).abs() < 0.002, "{darker} of the light");
+    let mut darker = Scene::clone(&cornell);
+    darker.lights[0].color *= 0.5;
+    assert!(still.set_lights(&darker.lights, darker.sky));
+    let fresh = gathered(&lab, &mut session(&lab, &Arc::new(darker), &settings), 4);
+    assert!(gathered(&lab, &mut still, 4) == fresh, "old light is left");
 }
