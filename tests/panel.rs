@@ -45,7 +45,7 @@ fn the_panel_begins_with_what_the_graph_pins_and_finds_names_however_they_are_wr
     driver.texts_until("the aperture that the graph chooses", |texts| {
         has(texts, "Aperture, auto (6 deg)")
     });
-    let group = driver.find("", "Tracing (3)");
+    let group = driver.find("", "Tracing (4)");
 
     for typed in ["lod offset", "lodoffset"] {
         driver.keys(&[CONTROL, u32::from(b'f')]);
@@ -59,7 +59,7 @@ fn the_panel_begins_with_what_the_graph_pins_and_finds_names_however_they_are_wr
         });
     }
     assert_eq!(
-        driver.find("", "Tracing (3)"),
+        driver.find("", "Tracing (4)"),
         group,
         "the panel is as wide as it was, its groups folded"
     );
