@@ -223,7 +223,12 @@ fn pictures_are_the_same_whatever_is_edited() {
     // So that what gathers rests now and then between two edits.
     let bounces = "max(32, 24 + accumulation_rounds) * bounce_frames + filter_frames";
     settles(home.path(), "bounces", bounces, "5");
-    settles(home.path(), "shade", "phases + 1 + accumulation_frames", "3");
+    settles(
+        home.path(),
+        "shade",
+        "phases + 1 + accumulation_frames",
+        "3",
+    );
     let lab = lab(home.path());
     let mut seed = 1;
     for path in [BY_THREADS, BY_RASTER] {

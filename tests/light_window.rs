@@ -33,13 +33,18 @@ fn click(driver: &mut WindowDriver, role: &str, label: &str) -> String {
 
 /// Adds a point light by the menu; the picture's fingerprint.
 fn add_point(driver: &mut WindowDriver) -> String {
-    // A loaded machine can open and close a menu in one frame.
+    // A loaded machine can open and close a menu in one frame, and describe it late.
+    let stays_open = |driver: &mut WindowDriver| {
+        (0..3).all(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(500));
+            driver.texts().iter().any(|text| text == "point")
+        })
+    };
     for _ in 0..10 {
-        if driver.texts().iter().any(|text| text == "point") {
+        if stays_open(driver) {
             break;
         }
         driver.click("", "add light");
-        std::thread::sleep(std::time::Duration::from_secs(1));
     }
     click(driver, "", "point")
 }

@@ -1,7 +1,7 @@
 //! How many frames each side needs until its picture has converged.
 
-use super::{Run, Side};
 use super::report::Report;
+use super::{Run, Side};
 use crate::lab::LabError;
 use crate::workbench::desired::request::RenderRequest;
 
@@ -46,6 +46,8 @@ impl Run<'_> {
 
     /// Asks a side for the frames that it needs.
     pub(super) fn request_frames_of(&mut self, number: usize, need: Need) {
+        // A and B are compared as soon as both have converged.
+        let compares = self.sides.iter().all(|s| s.session.is_some());
         let side = &mut self.sides[number];
         let session = side.session.as_ref();
         let (fresh, changed) =
@@ -58,6 +60,7 @@ impl Run<'_> {
             Need::Frames(least) => (least.max(fresh), changed.saturating_sub(fresh)),
             Need::View | Need::Light => (fresh, changed.saturating_sub(fresh)),
         };
+        let refines = if compares { 0 } else { refines };
         if frames >= side.converging_left() {
             side.frames_asked = frames;
             side.frames_left = side.frames_left.max(frames.saturating_add(refines));
@@ -112,11 +115,9 @@ impl Run<'_> {
         }
         self.out.send(Report::Restarted);
         self.request_frames(Need::Light);
-        let most = |frames: fn(&Side) -> u32| self.sides.iter().map(frames).max().unwrap_or(0);
-        let (left, refining) = (most(Side::converging_left), most(|s| s.refining));
+        let most = self.sides[0].frames_left.max(self.sides[1].frames_left);
         for side in &mut self.sides {
-            (side.frames_left, side.refining) = (left.saturating_add(refining), refining);
-            (side.frames_asked, side.least_left) = (left, left);
+            (side.frames_left, side.frames_asked, side.least_left) = (most, most, most);
         }
         Ok(())
     }
