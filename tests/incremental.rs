@@ -339,7 +339,11 @@ fn what_gathers_over_frames_rests() {
     let gathering = ["bounce queue clear", "bounce history", gather, "inject"];
     for path in [BY_THREADS, BY_RASTER] {
         // Light has gone round 32 times after 64 frames.
-        let settings = [("bounce_frames", "2"), ("gather_frames", "4")];
+        let settings = [
+            ("bounce_frames", "2"),
+            ("gather_frames", "4"),
+            ("accumulation_rounds", "1"),
+        ];
         let mut pair = Pair::new(&lab, "cornell", &[&path[..], &settings].concat());
         let mut pictures = Vec::new();
         let mut skipped = BTreeSet::new();
