@@ -12,7 +12,7 @@
 // Fraction of an age that marks disoccluded pixels, which have few samples. Other ages are whole frames.
 const float FEW_RAYS_AGE = 0.5;
 
-// Most rounds in the mean of a pixel under a moving camera, whose history drifts.
+// Most rounds in the mean of a pixel under a moving camera: its history drifts.
 const uint MOVING_ROUNDS = 4;
 
 struct Age {

@@ -16,8 +16,8 @@ Coverage fullCoverage(float offset) {
 // Sets mask texels with their centre inside the triangle or within MASK_REACH [mask texels] of it. Corners
 // in cells. Each row is the span of columns inside all three edges (Pineda 1988). Edge-on triangles cover the
 // whole cell and keep the given offset. A reach of 0.1 leaves gaps where walls meet: a corridor ten voxels
-// wide loses 1 % of its light at every bounce. A reach of 0.3 lies at edges with round coordinates, where
-// rounding decides and changes with the volume's place.
+// wide loses 1 % of its light at every bounce. With 0.3, rounding decides at edges with
+// round coordinates, and the mask changes when the volume moves.
 const float MASK_REACH = 0.28;
 
 Coverage triangleCoverage(vec3 a, vec3 b, vec3 c, ivec3 cell, uint axis, float offset) {
