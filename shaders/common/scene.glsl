@@ -21,6 +21,7 @@ layout(std140) uniform Camera {
     uvec2 size; // pixels
     uint frame;
     uint still_frames; // since anything except the camera changed
+    uint changing_frames; // length of the last run of frames that each changed something
     float delta_time;
 } camera;
 

@@ -21,6 +21,7 @@ pub use parts::{focus_of, parts_of};
 pub use scene::SceneGpu;
 pub(crate) use session::light_counts;
 pub use texels::Texels;
+use view::FrameCounters;
 pub use view::Viewpoint;
 pub use workspace::{Loaded, Workspace};
 
@@ -161,9 +162,7 @@ pub struct Session {
     bounds: (Vec3, Vec3),
     size: (u32, u32),
     time: f64,
-    frame: u32,
-    /// Frames since anything but the camera changed.
-    still_frames: u32,
+    counters: FrameCounters,
     sent_params: bool,
 }
 
@@ -281,8 +280,7 @@ impl Lab {
             viewpoint,
             size: experiment.size,
             time: experiment.time,
-            frame: 0,
-            still_frames: 0,
+            counters: FrameCounters::default(),
             sent_params: false,
         })
     }

@@ -1,6 +1,8 @@
 //! A graph that runs in a scene: frames, changes between them, and reading results.
 
-use super::{Lab, LabError, ReusableParts, Session, Texels, Viewpoint, no_texture, view};
+use super::{
+    FrameCounters, Lab, LabError, ReusableParts, Session, Texels, Viewpoint, no_texture, view,
+};
 use crate::experiment::PlacedCamera;
 use crate::graph::link::{Layouts, runs, table};
 use crate::graph::param::Params;
@@ -33,7 +35,7 @@ impl Session {
     pub fn restart(&mut self) -> Result<Vec<FrameTimes>, LabError> {
         let finished = self.program.restart()?;
         self.viewpoint = Viewpoint::new(&self.viewpoint.camera);
-        (self.frame, self.still_frames, self.sent_params) = (0, 0, false);
+        (self.counters, self.sent_params) = (FrameCounters::default(), false);
         Ok(finished)
     }
 
@@ -73,7 +75,7 @@ impl Session {
         }
         self.viewpoint = old.viewpoint.clone();
         self.time = old.time;
-        self.frame = old.frame;
+        self.counters.frame = old.counters.frame;
         Ok(())
     }
 
@@ -141,17 +143,19 @@ impl Session {
     /// # Errors
     /// The device was lost.
     pub fn frame(&mut self, delta: f64) -> Result<Option<FrameTimes>, LabError> {
-        let mut updates = self.scene_gpu.updates(self.time, self.frame == 0)?;
+        let mut updates = self
+            .scene_gpu
+            .updates(self.time, self.counters.frame == 0)?;
         updates.append(&mut self.light_updates);
-        self.still_frames = if updates.is_empty() && self.sent_params {
-            self.still_frames.saturating_add(1)
-        } else {
-            0
-        };
-        let frames = (self.frame, self.still_frames);
-        let camera =
-            self.viewpoint
-                .uniform(self.scene_gpu.origin, self.size, self.time, frames, delta);
+        self.counters
+            .count(!updates.is_empty() || !self.sent_params);
+        let camera = self.viewpoint.uniform(
+            self.scene_gpu.origin,
+            self.size,
+            self.time,
+            self.counters,
+            delta,
+        );
         updates.extend(self.scene_gpu.camera(camera));
         if !self.sent_params {
             updates.push(Update::all(
@@ -165,7 +169,7 @@ impl Session {
             }
             self.sent_params = true;
         }
-        self.frame += 1;
+        self.counters.frame += 1;
         self.time += delta;
         Ok(self.program.run(&updates)?)
     }

@@ -14,6 +14,33 @@ pub struct Viewpoint {
     previous: Option<(Mat4, Vec3)>,
 }
 
+/// Counts frames of a session.
+#[derive(Clone, Copy, Default)]
+pub(super) struct FrameCounters {
+    /// Frames before this one.
+    pub frame: u32,
+    /// Frames since anything but the camera changed.
+    pub still: u32,
+    /// Length of the last run of frames that each changed something but the camera.
+    pub changing: u32,
+}
+
+impl FrameCounters {
+    pub fn count(&mut self, changes: bool) {
+        let goes_on = changes && self.still == 0;
+        self.changing = match (changes, goes_on) {
+            (true, true) => self.changing.saturating_add(1),
+            (true, false) => 1,
+            (false, _) => self.changing,
+        };
+        self.still = if changes {
+            0
+        } else {
+            self.still.saturating_add(1)
+        };
+    }
+}
+
 impl Viewpoint {
     /// A camera of a scene.
     pub fn new(camera: &Camera) -> Viewpoint {
@@ -44,14 +71,13 @@ impl Viewpoint {
     }
 
     /// The content of the block `camera` in a world that begins at `origin`, and on to the next
-    /// frame. Frames are those that went before, and of them the last in which nothing but the
-    /// camera changed.
+    /// frame.
     pub fn uniform(
         &mut self,
         origin: Vec3,
         size: (u32, u32),
         time: f64,
-        (frame, still_frames): (u32, u32),
+        counters: FrameCounters,
         delta: f64,
     ) -> Vec<u8> {
         let c = &self.camera;
@@ -89,8 +115,9 @@ impl Viewpoint {
             previous_position: previous.1.to_array(),
             time: time as f32,
             size: [size.0, size.1],
-            frame,
-            still_frames,
+            frame: counters.frame,
+            still_frames: counters.still,
+            changing_frames: counters.changing,
             delta_time: delta as f32,
         })
         .to_vec()

@@ -76,6 +76,7 @@ block! {
         size: [u32; 2],
         frame: u32,
         still_frames: u32,
+        changing_frames: u32,
         delta_time: f32,
     }
 }
