@@ -13,9 +13,10 @@ layout(local_size_x = 128) in;
 shared uint queued_here;
 shared uint first;
 
-// Interleaving phase of a brick. Its voxels gather together, neighbouring bricks in different frames.
-uint phaseOf(uvec3 brick) {
-    return (brick.x + 3u * brick.y + 5u * brick.z) % uint(params.bounce_frames);
+// Whether a brick's voxels gather: once in a round. Neighbouring bricks gather in different frames.
+bool isInPhase(uvec3 brick) {
+    uint frames = bounceRoundFrames();
+    return (brick.x + 3u * brick.y + 5u * brick.z) % frames == camera.frame % frames;
 }
 
 // Stores a side's history and returns whether the side gathers: in its phase, and in every frame until it has
@@ -36,7 +37,7 @@ bool updateHistory(uint surfel, uint side, bool has_history) {
     uint most = phases + (averages ? uint(params.accumulation_rounds) - 1 : 0);
     uint updates = min(uint(numberOf(last)), most);
     bool complete = averages && updates == most;
-    bool due = updates < phases || !complete && phaseOf(uvec3(cell) >> 2) == camera.frame % phases;
+    bool due = updates < phases || !complete && isInPhase(uvec3(cell) >> 2);
     sideGathered.list[index] = packLight(lightOf(last), float(due ? min(updates + 1, most) : updates));
     return due;
 }

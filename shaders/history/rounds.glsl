@@ -4,8 +4,12 @@
 #define HISTORY_ROUNDS_GLSL
 #include "common/scene.glsl"
 
-// Rounds of all voxels without a change until their light counts as converged. If half the light is
-// reflected, less than 1% is missing.
+// Short rounds of all voxels after a change. If nine tenths of the light are reflected, a twentieth of it is
+// missing after them.
+const uint SHORT_ROUNDS = 16;
+
+// Long rounds until pixels under a moving camera take light as converged. If half of it is reflected, less than
+// 1% is missing.
 const uint CONVERGED_ROUNDS = 8;
 
 // A pixel stores its age and the rounds of its mean after the first as age + AGES * rounds, exact in a half
@@ -16,14 +20,22 @@ bool cameraIsStill() {
     return camera.view_projection == camera.previous_view_projection;
 }
 
-// Frames without a change from which voxels average, and pixels, which see their light one round later. A mean
-// that begins too early keeps too little light for long: if nine tenths are reflected, 12 % is missing after
-// 20 rounds. After a start the first rounds take a frame each.
+// Frames of a short round: a quarter of a long one, so that no frame gathers from more than a quarter of the
+// voxels.
+uint shortRound() {
+    return (uint(params.bounce_frames) + 3) / 4;
+}
+
+// Frames in which each voxel gathers once.
+uint bounceRoundFrames() {
+    uint frames = shortRound();
+    return camera.still_frames < SHORT_ROUNDS * frames ? frames : uint(params.bounce_frames);
+}
+
+// Frames without a change from which voxels average, and pixels, which see their light one round later. A
+// mean that begins too early keeps too little light for long.
 uint bounceMeanStart() {
-    uint frames = uint(params.bounce_frames);
-    bool begins = camera.still_frames + 1 >= camera.frame;
-    uint rounds = begins ? 1 + uint(max(20 - params.bounce_frames, 4)) : 24;
-    return rounds * frames + uint(params.filter_frames);
+    return SHORT_ROUNDS * shortRound() + uint(params.bounce_frames + params.filter_frames);
 }
 
 uint pixelMeanStart() {
