@@ -264,12 +264,10 @@ fn a_switched_light_arrives_as_late_as_the_filter_says() {
                 "the filter is for voxels"
             );
         }
-        // In turns of eight frames an eighth of the pixels follows each frame: seven leave more than 5 %.
-        assert_eq!(
-            value(&table, case, "turns", "diffuse convergence frames"),
-            Some(8.0),
-            "{case} in turns"
-        );
+        // In turns of eight frames an eighth of the pixels follows each frame: seven leave more than 5 %. The
+        // filter prefers those that have followed.
+        let frames = value(&table, case, "turns", "diffuse convergence frames").unwrap();
+        assert!(frames < 8.0, "{case} in turns: {frames}");
     }
 }
 

@@ -14,7 +14,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 uniform sampler2D gatheredDiffuse;
 uniform sampler2D gatheredSpecular;
 uniform sampler2D smoothedDiffuse;
-uniform sampler2D smoothedSpecular;
+uniform sampler2D smoothedSpecular; // a: weight of the pixel, less if its light is older than a change
 
 uniform writeonly image2D radiance; // total, including emission
 uniform writeonly image2D direct;
@@ -36,8 +36,11 @@ Filtered filtered(ivec2 pixel, GBufferSurface seen) {
     for (int i = 0; i < 4; i++) {
         ivec2 at = pixel + ivec2(i & 1, i >> 1);
         FilterWeights weights = filterWeights(at, stop);
+        vec4 reflected = texelFetch(smoothedSpecular, at, 0);
+        weights.diffuse *= reflected.a;
+        weights.specular *= reflected.a;
         diffuse += weights.diffuse * texelFetch(smoothedDiffuse, at, 0);
-        specular += weights.specular * texelFetch(smoothedSpecular, at, 0).rgb;
+        specular += weights.specular * reflected.rgb;
         diffuse_weights += weights.diffuse;
         specular_weights += weights.specular;
     }

@@ -5,13 +5,25 @@
 #include "params.glsl"
 #include "gbuffer/read.glsl"
 #include "shade/filter.glsl"
+#include "history/rounds.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 uniform sampler2D gatheredDiffuse;
-uniform sampler2D gatheredSpecular;
+uniform sampler2D gatheredSpecular; // a: age and rounds, see history/rounds.glsl
+uniform sampler2D gatherChange;
 uniform writeonly image2D smoothedDiffuse;
 uniform writeonly image2D smoothedSpecular;
+
+// Weight of light of an age: less if it is older than the last change. If changes last, light lacks those of
+// the frames since it was gathered, and likewise the bounces that follow a change.
+float currency(float age, float change) {
+    age = mod(age, float(AGES));
+    float phases = float(params.phases), still = min(float(camera.still_frames), phases);
+    float missed = clamp((age - still) / min(float(camera.changing_frames), phases), 0.0, 1.0);
+    missed = max(missed, age / phases * still / phases);
+    return 1.0 / (1.0 + change * missed * missed);
+}
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -25,15 +37,22 @@ void main() {
     EdgeStop stop = edgeStopOf(pixel, seen);
     vec4 diffuse = vec4(0.0);
     vec3 specular = vec3(0.0);
-    float diffuse_weights = 0.0, specular_weights = 0.0;
+    float diffuse_weights = 0.0, specular_weights = 0.0, surface_weights = 0.0;
+    vec2 tile = (vec2(pixel) + 0.5) / vec2(8 * textureSize(gatherChange, 0));
+    float change = textureLod(gatherChange, tile, 0.0).r;
     for (int i = 0; i < 16; i++) {
         ivec2 at = pixel + 2 * (ivec2(i & 3, i >> 2) - 2);
         FilterWeights weights = filterWeights(at, stop);
+        vec4 light = texelFetch(gatheredSpecular, at, 0);
+        float current = currency(light.a, change);
+        surface_weights += weights.diffuse;
+        weights.diffuse *= current;
+        weights.specular *= current;
         diffuse += weights.diffuse * texelFetch(gatheredDiffuse, at, 0);
-        specular += weights.specular * texelFetch(gatheredSpecular, at, 0).rgb;
+        specular += weights.specular * light.rgb;
         diffuse_weights += weights.diffuse;
         specular_weights += weights.specular;
     }
     imageStore(smoothedDiffuse, pixel, diffuse / diffuse_weights);
-    imageStore(smoothedSpecular, pixel, vec4(specular / specular_weights, 1.0));
+    imageStore(smoothedSpecular, pixel, vec4(specular / specular_weights, diffuse_weights / surface_weights));
 }
