@@ -72,7 +72,7 @@ impl Viewpoint {
 
     /// The content of the block `camera` in a world that begins at `origin`, and on to the next
     /// frame.
-    pub fn uniform(
+    pub(super) fn uniform(
         &mut self,
         origin: Vec3,
         size: (u32, u32),
