@@ -84,5 +84,7 @@ void main() {
         ivec2 near = tile + ivec2(i / TILE_THREADS % 3, i / TILE_THREADS / 3);
         all = plus(all, shared_sums[(near.y * TILES + near.x) * TILE_THREADS + i % TILE_THREADS]);
     }
-    imageStore(gatherChange, at, vec4(min(significance(all), 6e4)));
+    float still = float(min(camera.still_frames, uint(params.phases)));
+    float changing = float(min(camera.changing_frames, uint(params.phases)));
+    imageStore(gatherChange, at, vec4(min(significance(all), 6e4), still, changing, 0.0));
 }

@@ -17,12 +17,11 @@ uniform writeonly image2D smoothedSpecular;
 
 // Weight of light of an age: less if it is older than the last change. If changes last, light lacks those of
 // the frames since it was gathered, and likewise the bounces that follow a change.
-float currency(float age, float change) {
+float currency(float age, vec4 change) {
     age = mod(age, float(AGES));
-    float phases = float(params.phases), still = min(float(camera.still_frames), phases);
-    float missed = clamp((age - still) / min(float(camera.changing_frames), phases), 0.0, 1.0);
-    missed = max(missed, age / phases * still / phases);
-    return 1.0 / (1.0 + change * missed * missed);
+    float phases = float(params.phases), still = change.y, changing = max(change.z, 1.0);
+    float missed = max(clamp((age - still) / changing, 0.0, 1.0), age / phases * still / phases);
+    return 1.0 / (1.0 + change.x * missed * missed);
 }
 
 void main() {
@@ -39,7 +38,7 @@ void main() {
     vec3 specular = vec3(0.0);
     float diffuse_weights = 0.0, specular_weights = 0.0, surface_weights = 0.0;
     vec2 tile = (vec2(pixel) + 0.5) / vec2(8 * textureSize(gatherChange, 0));
-    float change = textureLod(gatherChange, tile, 0.0).r;
+    vec4 change = textureLod(gatherChange, tile, 0.0);
     for (int i = 0; i < 16; i++) {
         ivec2 at = pixel + 2 * (ivec2(i & 3, i >> 2) - 2);
         FilterWeights weights = filterWeights(at, stop);
