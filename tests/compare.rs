@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{conelab, fails, home, root, succeeds};
+use common::{conelab, fails, home, root, succeeds, table_with_times};
 use conelab::metrics::Linear;
 use conelab::results::picture;
 use serde_json::Value;
@@ -244,6 +244,60 @@ fn experiments_are_compared_by_part_with_each_other_or_with_the_cached_reference
             .iter()
             .any(|r| r["region"] == "concave corners")
     );
+}
+
+/// The last step equals a comparison of its own session. Pictures from files have no steps.
+#[test]
+fn experiments_are_scored_by_frame() {
+    let home = home();
+    let run = |args: &[&str]| succeeds(conelab(home.path()).args(args).args(CORNELL));
+    run(&["reference", "configs/rays.ron", "--spp", "32"]);
+    let compare = [
+        "compare",
+        "configs/rays.ron",
+        "configs/thesis.ron",
+        "--frames",
+        "12",
+        "--json",
+        "c.json",
+    ];
+    let by_frame = ["--by-frame", "steps"];
+    run(&[&compare[..], &by_frame, &COARSE].concat());
+    let rows = table_with_times(&home.path().join("steps/frames.csv"));
+    let of = |picture: &str, column: &str| -> Vec<f64> {
+        let rows = rows.iter().filter(|r| r["picture"] == picture);
+        rows.map(|r| r[column].parse().unwrap()).collect()
+    };
+    let json = json(&home.path().join("c.json"));
+    for (i, picture) in ["configs/rays.ron", "configs/thesis.ron"]
+        .iter()
+        .enumerate()
+    {
+        assert_eq!(of(picture, "frames"), [1.0, 2.0, 4.0, 8.0, 12.0]);
+        let times = of(picture, "GPU ms");
+        assert!(times.windows(2).all(|t| t[0] <= t[1]), "{times:?}");
+        let last = score(&json, "frame", i)["relmse"].as_f64().unwrap();
+        let step = of(picture, "relMSE")[4];
+        assert!(
+            (step / last - 1.0).abs() < 1e-12,
+            "{picture}: {step}, {last}"
+        );
+        let chart = home.path().join("steps/relmse-frames.svg");
+        assert!(std::fs::read_to_string(chart).unwrap().contains(picture));
+    }
+    let errors = of("configs/rays.ron", "relMSE");
+    assert!(errors[4] < 0.7 * errors[0], "{errors:?}");
+
+    let folder = tempfile::tempdir().unwrap();
+    let (a, b) = ("a.exr", "b.exr");
+    let pictures = [a, b].map(|name| exr(&folder, name, |_, _| [1.0; 3]));
+    let said = fails(
+        conelab(home.path())
+            .arg("compare")
+            .args(pictures)
+            .args(by_frame),
+    );
+    assert!(said.contains("--by-frame is for experiments"), "{said}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `conelab compare`.
 
+mod frames;
 mod sides;
 
 use super::adapt::Changes;
@@ -48,6 +49,10 @@ pub struct CompareArgs {
     /// Write maps of the error to this folder, PNG and EXR.
     #[arg(long, value_name = "FOLDER")]
     maps: Option<PathBuf>,
+    /// Score experiments after 1, 2, 4, ... frames, up to --frames (256 when absent), and write
+    /// charts of the error against frames and GPU time to this folder.
+    #[arg(long, value_name = "FOLDER")]
+    by_frame: Option<PathBuf>,
     #[command(flatten)]
     changes: Changes,
     #[command(flatten)]
@@ -102,7 +107,44 @@ pub fn run(args: &CompareArgs) -> Result<(), LabError> {
     if let Some(path) = &args.json {
         super::write_json(path, &comparison)?;
     }
+    if let Some(folder) = &args.by_frame {
+        by_frame(args, &mut sources, &reference, (pictures.len(), folder))?;
+    }
     sources.validated()
+}
+
+/// Scores the first experiments by frame.
+fn by_frame(
+    args: &CompareArgs,
+    sources: &mut Sources,
+    reference: &Side,
+    (pictures, folder): (usize, &Path),
+) -> Result<(), LabError> {
+    let part = args.part.first().map_or("total", String::as_str);
+    let mut steps = Vec::new();
+    for path in std::iter::once(&args.a).chain(&args.b).take(pictures) {
+        if path.extension().is_some_and(|e| e == "ron") {
+            let (mut session, ..) = sources.session(path, true)?;
+            let name = super::shown(path).display().to_string();
+            steps.extend(frames::steps(
+                &mut session,
+                &name,
+                reference,
+                args.frames,
+                part,
+            )?);
+        }
+    }
+    if steps.is_empty() {
+        return Err(LabError::Request(
+            "--by-frame is for experiments (.ron): pictures and captures have one frame".into(),
+        ));
+    }
+    say_part!("\n{}", frames::text(&steps));
+    for path in frames::write(folder, part, &steps)? {
+        say!("wrote {}", path.display());
+    }
+    Ok(())
 }
 
 /// The compared sides and the reference. Without a reference, A is compared with B.

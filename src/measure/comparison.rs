@@ -30,6 +30,15 @@ pub struct Side {
 }
 
 impl Side {
+    /// Parts without noise.
+    pub fn new(name: impl Into<String>, parts: BTreeMap<String, Linear>) -> Side {
+        Side {
+            name: name.into(),
+            parts,
+            noise: BTreeMap::new(),
+        }
+    }
+
     /// Whether it is display-referred.
     fn displayed(&self) -> bool {
         self.parts.values().any(|p| p.kind == Kind::Displayed)

@@ -3,9 +3,10 @@
 use super::super::{DeviceArgs, shown, validated};
 use crate::commands::adapt::{Changes, open_unlit};
 use crate::experiment::{Experiment, FIELDS};
-use crate::lab::{Lab, LabError, Workspace, parts_of};
+use crate::lab::{Lab, LabError, Session, Workspace, parts_of};
 use crate::measure::comparison::Side;
 use crate::measure::reference;
+use crate::metrics::Linear;
 use crate::results::capture::{self, Manifest};
 use crate::results::picture;
 use crate::scene::Scene;
@@ -45,27 +46,16 @@ impl<'a> Sources<'a> {
     pub(super) fn side(&mut self, path: &Path, set: bool) -> Result<Side, LabError> {
         let name = shown(path).display().to_string();
         if path.is_dir() {
-            let parts = capture::parts(path, &Manifest::read(path)?)?;
-            return Ok(Side {
+            return Ok(Side::new(
                 name,
-                parts,
-                noise: BTreeMap::new(),
-            });
+                capture::parts(path, &Manifest::read(path)?)?,
+            ));
         }
         if path.extension().is_some_and(|e| e == "ron") {
-            let parts = self.render(path, set)?;
-            return Ok(Side {
-                name,
-                parts,
-                noise: BTreeMap::new(),
-            });
+            return Ok(Side::new(name, self.render(path, set)?));
         }
         let parts = BTreeMap::from([("total".into(), picture::read_linear(path)?)]);
-        Ok(Side {
-            name,
-            parts,
-            noise: BTreeMap::new(),
-        })
+        Ok(Side::new(name, parts))
     }
 
     /// The cached reference of the first experiment, if there are both.
@@ -107,11 +97,22 @@ impl<'a> Sources<'a> {
         self.lab.as_ref().map_or(Ok(()), validated)
     }
 
-    fn render(
+    fn render(&mut self, path: &Path, set: bool) -> Result<BTreeMap<String, Linear>, LabError> {
+        let (mut session, experiment, scene) = self.session(path, set)?;
+        session.run(self.frames.unwrap_or(session.converging_frames()))?;
+        for message in session.failed_checks()? {
+            warn!("warning: {}: {message}", path.display());
+        }
+        self.rendered.push((experiment, scene));
+        session.parts()
+    }
+
+    /// A session of an experiment that computes all parts of the light.
+    pub(super) fn session(
         &mut self,
         path: &Path,
         set: bool,
-    ) -> Result<BTreeMap<String, crate::metrics::Linear>, LabError> {
+    ) -> Result<(Session, Experiment, Arc<Scene>), LabError> {
         let mut changes = self.changes.clone();
         if !set {
             changes.set.clear();
@@ -128,7 +129,7 @@ impl<'a> Sources<'a> {
             None => Lab::open(Workspace::find()?, self.device.options())?,
         };
         self.lab = Some(lab.clone());
-        let (mut session, warnings) = lab.prepare(&experiment, scene.clone(), |graph| {
+        let (session, warnings) = lab.prepare(&experiment, scene.clone(), |graph| {
             let parts = parts_of(graph);
             if parts.is_empty() {
                 let message = format!(
@@ -142,12 +143,7 @@ impl<'a> Sources<'a> {
         for warning in warnings {
             warn!("{warning}");
         }
-        session.run(self.frames.unwrap_or(session.converging_frames()))?;
-        for message in session.failed_checks()? {
-            warn!("warning: {}: {message}", path.display());
-        }
-        self.rendered.push((experiment, scene));
-        session.parts()
+        Ok((session, experiment, scene))
     }
 }
 
