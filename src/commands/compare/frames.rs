@@ -4,7 +4,7 @@ use crate::campaign::charts::{Axis, Line, lines};
 use crate::lab::{LabError, Session};
 use crate::measure::comparison::{Comparison, Request, Side, compare};
 use crate::metrics::{METRICS, Scores};
-use crate::results::table::{Table, four_digits, short};
+use crate::results::table::{Table, four_digits};
 use std::path::{Path, PathBuf};
 
 /// Frames when `--frames` is absent.
@@ -75,20 +75,19 @@ pub(super) fn write(folder: &Path, part: &str, steps: &[Step]) -> Result<Vec<Pat
         table.column(metric.title, |s| s.scores.get(metric.key).to_string());
     }
     let mut files = vec![("frames.csv".to_string(), table.csv()?)];
+    let marks: Vec<f64> = measured_frames(steps.iter().map(|s| s.frames).max().unwrap_or(1))
+        .into_iter()
+        .map(|n| n as f64)
+        .collect();
     for (key, title) in CHARTS {
-        let error = |s: &Step| s.scores.get(key);
-        for (name, axis, of) in [
-            (
-                "frames",
-                "frames",
-                (|s| s.frames as f64) as fn(&Step) -> f64,
-            ),
-            ("time", "GPU time of all frames, ms", |s| s.gpu_ms),
-        ] {
-            let title = format!("{title} of the part {part}");
-            if let Some(svg) = chart(&title, axis, steps, of, error)? {
-                files.push((format!("{key}-{name}.svg"), svg));
-            }
+        let chart = |x: &str, of: fn(&Step) -> f64, marks| {
+            let title = (format!("{title} of the part {part}"), x, title);
+            chart(title, steps, |s| (of(s), s.scores.get(key)), marks)
+        };
+        let by_frame = chart("frames", |s| s.frames as f64, Some(&marks))?;
+        let by_time = chart("GPU time of all frames, ms", |s| s.gpu_ms, None)?;
+        for (name, svg) in [("frames", by_frame), ("time", by_time)] {
+            files.extend(svg.map(|svg| (format!("{key}-{name}.svg"), svg)));
         }
     }
     let mut written = Vec::new();
@@ -100,17 +99,16 @@ pub(super) fn write(folder: &Path, part: &str, steps: &[Step]) -> Result<Vec<Pat
     Ok(written)
 }
 
-/// A line for each picture; `None` without two points above 0 on both axes.
+/// A line for each picture; `None` without two points above 0 on both axes. Titles: of the chart and of its axes.
 fn chart(
-    title: &str,
-    x: &str,
+    (title, x, y): (String, &str, &str),
     steps: &[Step],
-    of: impl Fn(&Step) -> f64,
-    error: impl Fn(&Step) -> f64,
+    point: impl Fn(&Step) -> (f64, f64),
+    marks: Option<&Vec<f64>>,
 ) -> Result<Option<String>, LabError> {
     let mut list: Vec<Line> = Vec::new();
     for step in steps {
-        let point = (of(step), error(step));
+        let point = point(step);
         if point.0 <= 0.0 || point.1 <= 0.0 || !point.1.is_finite() {
             continue;
         }
@@ -137,7 +135,11 @@ fn chart(
     if points.len() < 2 || across.0 >= across.1 {
         return Ok(None);
     }
-    lines(title, &Axis::log(x, across), &Axis::log("error", up), &list).map(Some)
+    let mut across = Axis::log(x, across);
+    if let Some(marks) = marks {
+        across = across.marked(marks.clone());
+    }
+    lines(&title, &across, &Axis::log(y, up), &list).map(Some)
 }
 
 /// The steps as text.
@@ -145,7 +147,7 @@ pub(super) fn text(steps: &[Step]) -> String {
     let mut table = Table::new(steps);
     table.column("picture", |s| s.picture.clone());
     table.column("frames", |s| s.frames.to_string());
-    table.column("GPU ms", |s| short(s.gpu_ms));
+    table.column("GPU ms", |s| format!("{:.1}", s.gpu_ms));
     for (key, title) in CHARTS {
         table.column(title, |s| four_digits(s.scores.get(key)));
     }
