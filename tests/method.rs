@@ -107,6 +107,7 @@ fn bounces_fill_the_furnace_and_rest() {
             ("bounce_frames", "4"),
             ("gather_frames", "4"),
             ("pixel_rays", "4"),
+            ("accumulation_rounds", "1"),
         ];
         let settings = [
             &turns[..],

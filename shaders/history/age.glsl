@@ -38,7 +38,8 @@ uint mostAveraged() {
 // frames, or more often if the view direction turns fast relative to the surface's lobe.
 bool ages(GBufferSurface seen, uint index, bool few_rays) {
     // One more round of all phases: by then each pixel has gathered the converged light.
-    bool converged = camera.still_frames > CONVERGED_ROUNDS * uint(params.bounce_frames) + uint(params.phases);
+    uint frames = CONVERGED_ROUNDS * uint(params.bounce_frames) + uint(params.phases);
+    bool converged = camera.still_frames > frames;
     if (few_rays || !converged || cameraIsStill()) return true;
     vec3 previous_to_viewer = normalize(camera.previous_position - seen.position);
     float turned = distance(seen.to_viewer, previous_to_viewer) * float(params.phases);

@@ -8,8 +8,8 @@
 // missing after them.
 const uint SHORT_ROUNDS = 16;
 
-// Long rounds until pixels under a moving camera take light as converged. If half of it is reflected, less than
-// 1% is missing.
+// Long rounds until pixels under a moving camera take light as converged. If half of it is reflected, less
+// than 1% is missing.
 const uint CONVERGED_ROUNDS = 8;
 
 // A pixel stores its age and the rounds of its mean after the first as age + AGES * rounds, exact in a half
