@@ -1,10 +1,10 @@
 //! Light balance of bounces, by a closed form. In a closed room of one albedo, the light of all walls
-//! together is (light of the first frame) / (1 - albedo), for any shape and any place of lamps.
+//! together is (light of the first frame) / (1 - albedo), for any shape and any place of lamps. And how soon it is there.
 
 mod common;
 
 use common::{assert_clean, experiment, lab, prepare, root, words};
-use conelab::lab::Session;
+use conelab::lab::{Lab, Session};
 use half::f16;
 use std::path::{Path, PathBuf};
 
@@ -91,6 +91,23 @@ fn write(folder: &Path, room: &Room, albedo: f64) -> PathBuf {
     file
 }
 
+const FINE: (&str, &str) = ("voxel_dim", "64");
+const COARSE: (&str, &str) = ("voxel_dim", "32");
+const ONE_FRAME: (&str, &str) = ("bounce_frames", "1");
+
+/// Without averages, so that each round has the same directions.
+fn session(lab: &Lab, folder: &Path, room: &Room, albedo: f64, set: &[(&str, &str)]) -> Session {
+    let file = write(folder, room, albedo);
+    let mut settings = vec![
+        ("shadow_dim", "512"),
+        ("cascades", "1"),
+        ("accumulation_rounds", "1"),
+    ];
+    settings.extend(set);
+    let e = experiment(&file.to_string_lossy(), (16, 12), &settings);
+    prepare(lab, &e, &["radiance"])
+}
+
 /// Area of each side of each surfel, 0 without a surface [1/16 mask texel].
 fn areas(session: &mut Session) -> Vec<f64> {
     let sums = words(session, "surfelSums");
@@ -111,42 +128,77 @@ fn light(session: &mut Session, name: &str, areas: &[f64]) -> f64 {
 }
 
 /// Bounds allow for the noise of 16 directions per surfel. In the corridor, ten voxels wide, 0.4 % per bounce are missing
-/// with 64 directions too. Coarser voxels change the shape: columns of three voxels gain 0.8 % per bounce.
+/// with 64 directions too, or 1.5 % in all. Coarser voxels change the shape: columns of three voxels gain 0.8 % per bounce.
 #[test]
 fn closed_rooms_keep_all_light() {
     let dir = tempfile::tempdir().unwrap();
     let lab = lab(root());
     let mut wrong = Vec::new();
-    for (albedo, bounces) in [(0.5, 8), (0.8, 24)] {
+    for albedo in [0.5, 0.8] {
         for room in &ROOMS {
-            let file = write(dir.path(), room, albedo);
-            let settings = [
-                ("voxel_dim", "64"),
-                ("shadow_dim", "512"),
-                ("bounce_frames", "1"),
-                ("bounce_directions", "16"),
-                ("cascades", "1"),
-            ];
-            let e = experiment(&file.to_string_lossy(), (16, 12), &settings);
-            let mut session = prepare(&lab, &e, &["radiance"]);
+            let directions = ("bounce_directions", "16");
+            let mut session = session(
+                &lab,
+                dir.path(),
+                room,
+                albedo,
+                &[FINE, ONE_FRAME, directions],
+            );
             session.run(1).unwrap();
             let areas = areas(&mut session);
             let first = light(&mut session, "sideRadiance", &areas);
-            session.run(bounces - 1).unwrap();
+            session.run(30).unwrap();
             let before = light(&mut session, "sideRadiance", &areas);
             session.run(1).unwrap();
             let all = light(&mut session, "sideRadiance", &areas);
             let gathered = light(&mut session, "sideGathered", &areas);
-            let exact = first * (1.0 - albedo.powi(bounces as i32 + 1)) / (1.0 - albedo);
+            let exact = first / (1.0 - albedo);
             let (energy, loss) = (all / exact, 1.0 - gathered / before);
             let line = format!(
                 "albedo {albedo}, {}: energy {energy:.4}, loss per bounce {loss:.4}",
                 room.name
             );
             println!("{line}");
-            if (energy - 1.0).abs() > 0.016 || loss.abs() > 0.005 {
+            if (energy - 1.0).abs() > 0.018 || loss.abs() > 0.006 {
                 wrong.push(line);
             }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert_clean(&lab);
+}
+
+/// The truth is what rounds of all sides in each frame end at, with the same directions. The corridor is left out where
+/// 98 % is reflected: there the light of eight directions depends on chance.
+#[test]
+fn bounces_converge_within_few_rounds() {
+    let dir = tempfile::tempdir().unwrap();
+    let lab = lab(root());
+    let mut wrong = Vec::new();
+    for (room, albedo, frames, bound) in [
+        (&ROOMS[2], 0.8, 48, 0.02),
+        (&ROOMS[2], 0.98, 128, 0.05),
+        (&ROOMS[3], 0.8, 48, 0.02),
+    ] {
+        let mut truth = session(&lab, dir.path(), room, albedo, &[COARSE, ONE_FRAME]);
+        truth.run(200).unwrap();
+        let areas = areas(&mut truth);
+        let exact = light(&mut truth, "sideRadiance", &areas);
+        let mut spread = session(&lab, dir.path(), room, albedo, &[COARSE]);
+        let mut most = 0.0f64;
+        let mut reached = 0.0;
+        for _ in 0..frames / 4 {
+            spread.run(4).unwrap();
+            reached = light(&mut spread, "sideRadiance", &areas) / exact;
+            most = most.max(reached);
+        }
+        let line = format!(
+            "albedo {albedo}, {}: {reached:.4} after {frames} frames, at most {most:.4}",
+            room.name
+        );
+        println!("{line}");
+        if (reached - 1.0).abs() > bound || most > 1.1 {
+            wrong.push(line);
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));

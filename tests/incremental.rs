@@ -221,7 +221,7 @@ const BY_RASTER: [(&str, &str); 3] = [
 fn pictures_are_the_same_whatever_is_edited() {
     let home = common::home();
     // So that what gathers rests now and then between two edits.
-    let bounces = "16 * ceil(bounce_frames / 4) + max(16, 1 + accumulation_rounds) * bounce_frames + filter_frames";
+    let bounces = "12 * ceil(bounce_frames / 4) + 13 * (1 + filter_frames) + max(16, 1 + accumulation_rounds) * bounce_frames + filter_frames";
     settles(home.path(), "bounces", bounces, "5");
     settles(
         home.path(),
@@ -338,7 +338,8 @@ fn what_gathers_over_frames_rests() {
     let (gather, rays) = ("gather from emitters", "gather pixels and emitters");
     let gathering = ["bounce queue clear", "bounce history", gather, "inject"];
     for path in [BY_THREADS, BY_RASTER] {
-        // Light has gone round 32 times after 16 frames and 32 more.
+        // Light has gone round 12 times after 25 frames, and 16 times in 32 more.
+        const RESTS: usize = 57;
         let settings = [
             ("bounce_frames", "2"),
             ("gather_frames", "4"),
@@ -347,10 +348,10 @@ fn what_gathers_over_frames_rests() {
         let mut pair = Pair::new(&lab, "cornell", &[&path[..], &settings].concat());
         let mut pictures = Vec::new();
         let mut skipped = BTreeSet::new();
-        for frame in 0..48 + 16 {
+        for frame in 0..RESTS + 16 {
             skipped = pair.frame(&format!("frame {frame}"));
             assert!(
-                frame > 48 || !skipped.contains(gather),
+                frame > RESTS || !skipped.contains(gather),
                 "frame {frame}: {skipped:?}"
             );
             pictures.push(mean(&floats(&mut pair.sides[0], "radiance", 0)));
@@ -368,11 +369,11 @@ fn what_gathers_over_frames_rests() {
             "everything is skipped"
         );
         // Half of the frames would have done: what is missing at the end is less than that.
-        let (half, end) = (pictures[24], pictures[63]);
-        println!("{path:?}: light of frame 24 {half}, of frame 63 {end}");
+        let (half, end) = (pictures[RESTS / 2], pictures[RESTS + 15]);
+        println!("{path:?}: light after half of the frames {half}, at the end {end}");
         assert!(
             (half / end - 1.0).abs() < 0.002,
-            "the light of frame 24, {half}, and of the last, {end}"
+            "light after half of the frames {half}, at the end {end}"
         );
         // The camera moves: pixels gather, voxels rest.
         let placed = PlacedCamera::new((2.4, 2.5, 9.0), (2.5, 2.5, 0.0), 40.0);

@@ -193,7 +193,7 @@ fn a_switched_lamp_is_seen_before_all_pixels_gather() {
     assert_clean(&lab);
 }
 
-/// After a change, a round of bounces takes a quarter of `bounce_frames`.
+/// After a change, voxels gather in a quarter of `bounce_frames`, a frame after their light has changed.
 #[test]
 fn all_voxels_gather_soon_after_a_change() {
     let lab = lab(root());
@@ -205,7 +205,7 @@ fn all_voxels_gather_soon_after_a_change() {
     session.run(200).unwrap();
     let old = words(&mut session, "sideGathered");
     assert!(session.set_lights(&after.lights, after.sky));
-    session.run(5).unwrap();
+    session.run(6).unwrap();
     let soon = words(&mut session, "sideGathered");
     session.run(40).unwrap();
     let late = words(&mut session, "sideGathered");
@@ -213,7 +213,7 @@ fn all_voxels_gather_soon_after_a_change() {
     let sides = || (0..old.len()).step_by(2).filter(|i| old[*i] != late[*i]);
     let stale = sides().filter(|i| old[*i] == soon[*i]).count();
     println!(
-        "{stale} of {} sides have old light after 5 frames",
+        "{stale} of {} sides have old light after 6 frames",
         sides().count()
     );
     assert!(sides().count() > 1000 && stale == 0, "{stale} sides");
@@ -399,8 +399,8 @@ fn rounds_of_new_directions_are_averaged_while_nothing_changes() {
         ("bounce_frames", "1"),
         ("accumulation_rounds", "16"),
     ];
-    // Seventeen rounds of a frame, one of the pixels.
-    let start = 19;
+    // Twelve short rounds of two frames, one round of the voxels and one of the pixels.
+    let start = 28;
     let mut still = session(&lab, &cornell, &settings);
     let one_round = gathered(&lab, &mut still, start);
     let mean = gathered(&lab, &mut still, 2 * ROUNDS);

@@ -20,6 +20,7 @@ layout(std430) readonly buffer LastBlocks { uvec4 list[]; } lastBlocks;
 #include "bounce/queue.glsl"
 #include "bounce/placed.glsl"
 #include "history/rounds.glsl"
+#include "bounce/residual.glsl"
 
 const uint BOUNCE_THREADS = 4;
 
@@ -50,13 +51,20 @@ void main() {
         }
         shared_light[part][lane] = light;
         barrier();
-        if (part == 0 && start + lane < count) {
+        bool stores = part == 0 && start + lane < count;
+        vec3 begun = vec3(0.0);
+        float updates = 0.0;
+        if (stores) {
             for (uint k = 1; k < BOUNCE_THREADS; k++) light += shared_light[k][lane];
             uvec2 last = sideGathered.list[index];
-            float updates = numberOf(last), averaged = max(updates - float(params.bounce_frames), 0.0);
-            light = mix(lightOf(last), light, weightOfRound(uint(averaged)));
+            updates = numberOf(last);
+            begun = lightOf(last);
+            float averaged = max(updates - float(params.bounce_frames), 0.0);
+            light = mix(begun, light, weightOfRound(uint(averaged)));
             sideGathered.list[index] = packLight(light, updates);
         }
+        if (inShortRound())
+            recordResidual(stores, index, light, begun, updates >= float(params.bounce_frames));
         barrier();
     }
 }

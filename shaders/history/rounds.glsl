@@ -4,9 +4,9 @@
 #define HISTORY_ROUNDS_GLSL
 #include "common/scene.glsl"
 
-// Short rounds of all voxels after a change. If nine tenths of the light are reflected, a twentieth of it is
-// missing after them.
-const uint SHORT_ROUNDS = 16;
+// Short rounds of all voxels after a change, extrapolated (bounce/acceleration.glsl). If 98 % of the light is
+// reflected, a twentieth of it is missing after them.
+const uint SHORT_ROUNDS = 12;
 
 // Long rounds until pixels under a moving camera take light as converged. If half of it is reflected, less
 // than 1% is missing.
@@ -20,22 +20,48 @@ bool cameraIsStill() {
     return camera.view_projection == camera.previous_view_projection;
 }
 
-// Frames of a short round: a quarter of a long one, so that no frame gathers from more than a quarter of the
-// voxels.
+// Frames in which all voxels gather in a short round: a quarter of a long one, so that no frame gathers from
+// more than a quarter of the voxels.
 uint shortRound() {
     return (uint(params.bounce_frames) + 3) / 4;
 }
 
+// Frames from a change of voxels' light until rays hit it.
+uint lightDelay() {
+    return 1u + uint(params.filter_frames);
+}
+
+// Frames of a short round: at its start light is extrapolated, and nobody gathers before rays hit that.
+uint shortRoundFrames() {
+    return lightDelay() + shortRound();
+}
+
+uint shortRoundsEnd() {
+    return lightDelay() + SHORT_ROUNDS * shortRoundFrames();
+}
+
+// Whether the frame belongs to a short round. Its number, and its frame's, count from 0.
+bool inShortRound() {
+    return camera.still_frames >= lightDelay() && camera.still_frames < shortRoundsEnd();
+}
+
+uint shortRoundNumber() {
+    return (camera.still_frames - lightDelay()) / shortRoundFrames();
+}
+
+uint frameOfShortRound() {
+    return (camera.still_frames - lightDelay()) % shortRoundFrames();
+}
+
 // Frames in which each voxel gathers once.
 uint bounceRoundFrames() {
-    uint frames = shortRound();
-    return camera.still_frames < SHORT_ROUNDS * frames ? frames : uint(params.bounce_frames);
+    return camera.still_frames < shortRoundsEnd() ? shortRound() : uint(params.bounce_frames);
 }
 
 // Frames without a change from which voxels average, and pixels, which see their light one round later. A
 // mean that begins too early keeps too little light for long.
 uint bounceMeanStart() {
-    return SHORT_ROUNDS * shortRound() + uint(params.bounce_frames + params.filter_frames);
+    return shortRoundsEnd() + uint(params.bounce_frames + params.filter_frames);
 }
 
 uint pixelMeanStart() {

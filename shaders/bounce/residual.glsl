@@ -1,0 +1,57 @@
+// Residuals of the sides that a group has gathered: stores them and adds them to the sums of the round.
+#ifndef BOUNCE_RESIDUAL_GLSL
+#define BOUNCE_RESIDUAL_GLSL
+#include "bounce/acceleration.glsl"
+
+layout(std430) buffer RoundResiduals { RoundSums rounds[2]; } roundResiduals;
+layout(std430) buffer SideChanges { SideChange list[]; } sideChanges;
+
+shared int shared_along[3];
+shared int shared_squared[3];
+shared uint shared_largest[3];
+
+void addWide(uint which, uint channel, bool squared, int value) {
+    if (value == 0) return;
+    uint low = uint(value), old;
+    if (squared) old = atomicAdd(roundResiduals.rounds[which].squared[channel][0], low);
+    else old = atomicAdd(roundResiduals.rounds[which].along[channel][0], low);
+    uint high = (value < 0 ? ~0u : 0u) + uint(old + low < old);
+    if (high == 0u) return;
+    if (squared) atomicAdd(roundResiduals.rounds[which].squared[channel][1], high);
+    else atomicAdd(roundResiduals.rounds[which].along[channel][1], high);
+}
+
+// light: gathered; start: the side's light at the start of the round. counts: whether the side has gathered
+// in the round before. All threads of a group call this together, with `any` for those that have a side.
+void recordResidual(bool any, uint index, vec3 light, vec3 start, bool counts) {
+    uint thread = gl_LocalInvocationIndex, now = shortRoundNumber() & 1u, before = 1u - now;
+    if (thread < 3u) {
+        shared_along[thread] = shared_squared[thread] = 0;
+        shared_largest[thread] = 0u;
+    }
+    barrier();
+    if (any) {
+        bool is_first = shortRoundNumber() == 0u;
+        SideChange last = sideChanges.list[index];
+        vec3 residual = light - start, growth = residual - lightOf(last.residual);
+        vec3 previous = is_first ? light
+            : start + stepFrom(roundResiduals.rounds[before]) * lightOf(last.advance);
+        sideChanges.list[index] = SideChange(packSigned(residual), packSigned(light - previous));
+        for (int c = 0; c < 3; c++) {
+            atomicMax(shared_largest[c], floatBitsToUint(abs(residual[c])));
+            float unit = uintBitsToFloat(roundResiduals.rounds[before].largest[c]);
+            if (is_first || !counts || unit <= 0.0) continue;
+            float f = clamp(residual[c] / unit, -LARGEST_TERM, LARGEST_TERM);
+            float df = clamp(growth[c] / unit, -LARGEST_TERM, LARGEST_TERM);
+            atomicAdd(shared_along[c], int(round(f * df * SUM_UNIT)));
+            atomicAdd(shared_squared[c], int(round(df * df * SUM_UNIT)));
+        }
+    }
+    barrier();
+    if (thread >= 3u) return;
+    addWide(now, thread, false, shared_along[thread]);
+    addWide(now, thread, true, shared_squared[thread]);
+    atomicMax(roundResiduals.rounds[now].largest[thread], shared_largest[thread]);
+}
+
+#endif
