@@ -16,8 +16,8 @@ struct SideShifts {
 };
 
 // Sides of 8x8 cells that face one way share sequences that fill their domains evenly, with a random shift
-// and an even sequence of shifts over the rounds (history/rounds.glsl): the errors of neighbours cancel for
-// whoever sees them all. With random numbers for each side and round, the light behind two bends of a
+// and an even sequence of shifts over the rounds (history/rounds.glsl): the errors of neighbours cancel
+// where all of them are seen. With random numbers for each side and round, the light behind two bends of a
 // corridor varies by 2 %, after ten rounds by 0.8 %; with these sequences by 0.5 % and 0.2 %.
 // Cells count from the world's origin, so that directions stay when the volume moves in steps of cells.
 SideShifts shiftsOf(VolumeMap map, ivec3 cell, uint axis, uint side, uint round) {
