@@ -514,7 +514,7 @@ fn a_failure_keeps_the_old_picture() {
 
 /// With room for what Sponza has there, all on threads. All bricks alone would take 100 MiB more.
 #[test]
-fn voxels_of_512_across_fit_into_700_mib() {
+fn voxels_of_512_across_fit_into_800_mib() {
     let set = |name: &str, value: &str| ["--set".to_owned(), format!("{name}={value}")];
     let threads = ["voxelizer", "shadow_map", "gbuffer"].map(|name| set(name, "compute"));
     let sizes = [
@@ -539,7 +539,7 @@ fn voxels_of_512_across_fit_into_700_mib() {
             .unwrap_or_else(|| panic!("no '{what}' in\n{text}"));
         line.split_whitespace().last().unwrap().parse().unwrap()
     };
-    assert!((500.0..700.0).contains(&mib("total ")), "{text}");
+    assert!((500.0..800.0).contains(&mib("total ")), "{text}");
     assert!(mib("saved by memory") > 100.0, "{text}");
 }
 
