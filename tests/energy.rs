@@ -168,8 +168,8 @@ fn closed_rooms_keep_all_light() {
     assert_clean(&lab);
 }
 
-/// The truth is what rounds of all sides in each frame end at, with the same directions. The corridor is left out where
-/// 98 % is reflected: there the light of eight directions depends on chance.
+/// The truth is the light after many rounds that take one frame each, with the same directions. The corridor has no case
+/// of albedo 0.98: its light would depend on the random directions.
 #[test]
 fn bounces_converge_within_few_rounds() {
     let dir = tempfile::tempdir().unwrap();

@@ -10,15 +10,13 @@
 // Sums over the sides of a round. Integers, so that their order does not matter.
 struct RoundSums {
     uint largest[3]; // |f|, as bits of a float
-    uint along[3][2]; // f (f - f'), 64 bits, low word first
-    uint squared[3][2]; // (f - f')^2
+    uint products[6][2]; // by channel f (f - f'), then (f - f')^2; 64 bits, low word first
 };
 
-const uint NO_SUM[2] = uint[2](0u, 0u);
 const float SUM_UNIT = 262144.0; // 64 sides of the largest terms fit into 31 bits
 const float LARGEST_TERM = 8.0; // relative to the largest residual of the round before
 
-// Of a side, both as packSigned.
+// Both packed by packSigned.
 struct SideChange {
     uvec2 residual; // f
     uvec2 advance; // g - g'
@@ -44,8 +42,8 @@ float sumOf(uint words[2]) {
 vec3 stepFrom(RoundSums sums) {
     vec3 t = vec3(0.0);
     for (int c = 0; c < 3; c++) {
-        float squared = sumOf(sums.squared[c]);
-        if (squared > 0.0) t[c] = clamp(sumOf(sums.along[c]) / squared, -60.0, 0.9);
+        float squared = sumOf(sums.products[3 + c]);
+        if (squared > 0.0) t[c] = clamp(sumOf(sums.products[c]) / squared, -60.0, 0.9);
     }
     return t;
 }

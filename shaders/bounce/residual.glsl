@@ -6,31 +6,24 @@
 layout(std430) buffer RoundResiduals { RoundSums rounds[2]; } roundResiduals;
 layout(std430) buffer SideChanges { SideChange list[]; } sideChanges;
 
-shared int shared_along[3];
-shared int shared_squared[3];
+shared int shared_products[6];
 shared uint shared_largest[3];
 
-void addWide(uint which, uint channel, bool squared, int value) {
+void addProduct(uint which, uint product, int value) {
     if (value == 0) return;
-    uint low = uint(value), old;
-    if (squared) old = atomicAdd(roundResiduals.rounds[which].squared[channel][0], low);
-    else old = atomicAdd(roundResiduals.rounds[which].along[channel][0], low);
+    uint low = uint(value), old = atomicAdd(roundResiduals.rounds[which].products[product][0], low);
     uint high = (value < 0 ? ~0u : 0u) + uint(old + low < old);
-    if (high == 0u) return;
-    if (squared) atomicAdd(roundResiduals.rounds[which].squared[channel][1], high);
-    else atomicAdd(roundResiduals.rounds[which].along[channel][1], high);
+    if (high != 0u) atomicAdd(roundResiduals.rounds[which].products[product][1], high);
 }
 
 // light: gathered; start: the side's light at the start of the round. counts: whether the side has gathered
-// in the round before. All threads of a group call this together, with `any` for those that have a side.
-void recordResidual(bool any, uint index, vec3 light, vec3 start, bool counts) {
+// in the round before. All threads of a group call this together, with has_side for those that gathered one.
+void recordResidual(bool has_side, uint index, vec3 light, vec3 start, bool counts) {
     uint thread = gl_LocalInvocationIndex, now = shortRoundNumber() & 1u, before = 1u - now;
-    if (thread < 3u) {
-        shared_along[thread] = shared_squared[thread] = 0;
-        shared_largest[thread] = 0u;
-    }
+    if (thread < 6u) shared_products[thread] = 0;
+    if (thread < 3u) shared_largest[thread] = 0u;
     barrier();
-    if (any) {
+    if (has_side) {
         bool is_first = shortRoundNumber() == 0u;
         SideChange last = sideChanges.list[index];
         vec3 residual = light - start, growth = residual - lightOf(last.residual);
@@ -43,15 +36,13 @@ void recordResidual(bool any, uint index, vec3 light, vec3 start, bool counts) {
             if (is_first || !counts || unit <= 0.0) continue;
             float f = clamp(residual[c] / unit, -LARGEST_TERM, LARGEST_TERM);
             float df = clamp(growth[c] / unit, -LARGEST_TERM, LARGEST_TERM);
-            atomicAdd(shared_along[c], int(round(f * df * SUM_UNIT)));
-            atomicAdd(shared_squared[c], int(round(df * df * SUM_UNIT)));
+            atomicAdd(shared_products[c], int(round(f * df * SUM_UNIT)));
+            atomicAdd(shared_products[3 + c], int(round(df * df * SUM_UNIT)));
         }
     }
     barrier();
-    if (thread >= 3u) return;
-    addWide(now, thread, false, shared_along[thread]);
-    addWide(now, thread, true, shared_squared[thread]);
-    atomicMax(roundResiduals.rounds[now].largest[thread], shared_largest[thread]);
+    if (thread < 6u) addProduct(now, thread, shared_products[thread]);
+    if (thread < 3u) atomicMax(roundResiduals.rounds[now].largest[thread], shared_largest[thread]);
 }
 
 #endif

@@ -34,9 +34,10 @@ bool isInPhase(uvec3 brick) {
 void keepSums(uint thread) {
     if (thread >= 2) return;
     RoundSums sums = lastResiduals.rounds[thread];
-    bool begins = thread == (shortRoundNumber() & 1u) && frameOfShortRound() == 0;
-    if (begins) sums = RoundSums(uint[3](0, 0, 0), uint[3][2](NO_SUM, NO_SUM, NO_SUM),
-        uint[3][2](NO_SUM, NO_SUM, NO_SUM));
+    if (thread == (shortRoundNumber() & 1u) && frameOfShortRound() == 0) {
+        for (int c = 0; c < 3; c++) sums.largest[c] = 0u;
+        for (int k = 0; k < 6; k++) sums.products[k] = uint[2](0u, 0u);
+    }
     roundResiduals.rounds[thread] = sums;
 }
 

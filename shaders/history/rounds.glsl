@@ -31,7 +31,7 @@ uint lightDelay() {
     return 1u + uint(params.filter_frames);
 }
 
-// Frames of a short round: at its start light is extrapolated, and nobody gathers before rays hit that.
+// Frames of a short round: at its start light is extrapolated, and no voxel gathers before rays hit it.
 uint shortRoundFrames() {
     return lightDelay() + shortRound();
 }
