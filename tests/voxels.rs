@@ -248,6 +248,71 @@ fn cells_hold_the_mean_of_what_is_in_them() {
     }
 }
 
+/// Tiles a quarter of a cell above a floor, up to the middle of a column of cells: colours are of what can be seen.
+#[test]
+fn tiles_hide_the_floor_beneath_them() {
+    let lab = lab(root());
+    let (floor, tiles) = ([0.8, 0.0, 0.2], [0.0, 0.6, 0.2]);
+    for (up, mode) in [1.0f32, -1.0]
+        .into_iter()
+        .flat_map(|up| [("conservative", "dilate"), ("voxelizer", "compute")].map(|m| (up, m)))
+    {
+        let sheet = |to: f32, height: f32| {
+            [[-9.0, -9.0], [to, -9.0], [to, 9.0], [-9.0, 9.0]].map(|[x, z]| Vertex {
+                position: [x, up * height, z],
+                normal: [0.0, up, 0.0],
+                ..Vertex::default()
+            })
+        };
+        let part = |material: u32| Submesh {
+            first_index: 6 * material,
+            index_count: 6,
+            material,
+        };
+        let mesh = Mesh {
+            vertices: [sheet(9.0, 0.03), sheet(0.03125, 0.046)].concat(),
+            indices: vec![0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7],
+            submeshes: vec![part(0), part(1)],
+            ..Mesh::default()
+        };
+        let paint = |[r, g, b]: [f32; 3]| Material {
+            base_color: [r, g, b, 1.0].into(),
+            ..Material::default()
+        };
+        let scene = Arc::new(placed(mesh, vec![paint(floor), paint(tiles)], Vec::new()));
+        let settings = [
+            ("voxel_dim", "32"),
+            ("volume", "box"),
+            ("volume_size", "(2, 2, 2)"),
+            ("reflectance", "base"),
+            QUICK,
+            mode,
+        ];
+        let experiment = experiment("cornell", (16, 16), &settings);
+        let wants = |g: &_| conelab::measure::oracle::wanted(g);
+        let (mut session, _) = lab.prepare(&experiment, scene, wants).unwrap();
+        session.frame(0.0).unwrap();
+        session.finish().unwrap();
+        let (grid, voxels) = read(&mut session).unwrap();
+        assert_eq!(voxels.len(), 32 * 32, "{mode:?}: one layer of cells");
+        for voxel in voxels {
+            let share = match grid.place(voxel.number)[0] {
+                0..16 => 1.0,
+                16 => 0.5,
+                _ => 0.0,
+            };
+            let expected = Vec3::from(floor).lerp(tiles.into(), share);
+            assert!(
+                voxel.color.abs_diff_eq(expected, 0.02),
+                "{mode:?}, side {up}, column {:?}: {} instead of {expected}",
+                grid.place(voxel.number),
+                voxel.color
+            );
+        }
+    }
+    assert_clean(&lab);
+}
+
 /// Sums over poses.
 #[derive(Default)]
 struct Sum {

@@ -19,7 +19,7 @@ float coverageOf(uint surfel, uint side) {
     uint base = surfelBase(surfel);
     uvec2 mask = coverageMaskOf(base, side);
     if (mask == uvec2(0)) mask = coverageMaskOf(base, SIDES - 1 - side); // a mirrored side may lack a mask
-    return float(bitCount(mask.x) + bitCount(mask.y)) / 64.0;
+    return float(coveredTexels(mask)) / 64.0;
 }
 
 void main() {

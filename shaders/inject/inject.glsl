@@ -14,9 +14,6 @@
 
 layout(local_size_x = 128) in;
 
-// Surfaces closer to each other count as one [cells].
-const float LAYER = 0.12;
-
 // Sample points on a side's surfaces in each covered quarter, relative to the cell centre [cells]: on the
 // mean plane and on the front layer. If a cell has two layers, the front layer is lit and shadows the mean
 // plane.

@@ -15,6 +15,11 @@ bool isCovered(uvec2 mask, vec2 lateral) {
     return ((at.y < 4 ? mask.x : mask.y) >> (8 * (at.y & 3) + at.x) & 1u) != 0;
 }
 
+// Number of covered mask texels.
+int coveredTexels(uvec2 mask) {
+    return bitCount(mask.x) + bitCount(mask.y);
+}
+
 // Mask restricted to one quarter of the cell (4x4 mask texels).
 uvec2 quarterOf(uvec2 mask, uint quarter) {
     uint columns = mask[quarter / 2] & 0x0f0f0f0fu << 4 * (quarter & 1);

@@ -19,7 +19,7 @@ struct Side {
 float areaRatio(uint surfel, uint side) {
     bool measured = !WARPED && params.areas_measured != 0;
     uvec2 mask = coverageMaskOf(surfelBase(surfel), side);
-    float covered = 16.0 * float(bitCount(mask.x) + bitCount(mask.y));
+    float covered = 16.0 * float(coveredTexels(mask));
     return measured && covered > 0.0 ? float(surfelSums.words[sideBase(surfel, side) + 3]) / covered : 1.0;
 }
 

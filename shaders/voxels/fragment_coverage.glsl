@@ -34,7 +34,7 @@ void cutOut(uvec2 triangle, vec3 corner[3], ivec3 cell, uint axis, inout Coverag
     Gradient g = Gradient(step[0], step[1]);
     Interpolants middle = Interpolants((v[0].uv + v[1].uv + v[2].uv) / 3.0,
         vec4((v[0].color.a + v[1].color.a + v[2].color.a) / 3.0));
-    uint before = bitCount(coverage.mask.x) + bitCount(coverage.mask.y);
+    uint before = coveredTexels(coverage.mask);
     if (before == 0 && baseColor(m, middle, g).a < m.alpha_cutoff) coverage.weight = 0;
     for (int word = 0; word < 2; word++) {
         for (uint left = coverage.mask[word]; left != 0; left &= left - 1) {
@@ -45,7 +45,7 @@ void cutOut(uvec2 triangle, vec3 corner[3], ivec3 cell, uint axis, inout Coverag
             if (baseColor(m, part, g).a < m.alpha_cutoff) coverage.mask[word] &= ~(1u << bit);
         }
     }
-    uint after = bitCount(coverage.mask.x) + bitCount(coverage.mask.y);
+    uint after = coveredTexels(coverage.mask);
     if (before > 0) coverage.weight = after > 0 ? max(coverage.weight * after / before, 1u) : 0;
 }
 

@@ -42,6 +42,9 @@ uint storedOffset(float offset) {
     return uint(clamp(offset / OFFSET_REACH, -1.0, 1.0) * 511.0 + 512.5);
 }
 
+// Surfaces closer to each other count as one [cells].
+const float LAYER = 0.12;
+
 // Front layer of a side: the outermost surface in each quarter of the cell. Five bits of offset, increasing
 // outwards, 0 for none; three bits of coverage, in sevenths of the quarter.
 struct FrontLayer {
@@ -59,6 +62,12 @@ FrontLayer frontLayerOf(uint word, uint side, uint quarter) {
     uint w = word >> 8 * quarter & 255u;
     float offset = (float(w >> 3) - 16.0) / 30.0;
     return FrontLayer(side == 0 ? offset : -offset, float(w & 7u) / 7.0);
+}
+
+// Mask texels of a quarter that its front layer covers, rounded up, 0 to 16.
+int texelsOfFront(FrontLayer front) {
+    int sevenths = int(7.0 * front.covers + 0.5);
+    return sevenths == 7 ? 16 : 2 * sevenths;
 }
 
 // Merges all four quarters: keeps the outer surface, or adds the coverage of both at the same level. The

@@ -1,5 +1,5 @@
-// Appends fragments or points to the fragment list. merge.comp merges them into voxels. Costs six words and
-// at most two atomics here; the sums are left to a pass that fills the whole GPU.
+// Appends fragments or points to the fragment list. coverage.comp and merge.comp merge them into voxels.
+// Costs six words and at most two atomics here; the sums are left to passes that fill the whole GPU.
 #ifndef STORE_VOXEL_GLSL
 #define STORE_VOXEL_GLSL
 #include "volume/volume.glsl"

@@ -37,7 +37,8 @@ layout(std430) buffer VoxelCounter {
 } voxelCounter;
 
 // Fragments in no particular order: cell, colour, normal and offset, emission. voxelTriangles has each
-// fragment's triangle: its draw, and its first position in `indices`.
+// fragment's triangle: its draw, and its first position in `indices`. After coverage.comp it has the coverage
+// instead (voxels/layers.glsl).
 layout(std430) buffer VoxelFragments { uvec4 list[]; } voxelFragments;
 layout(std430) buffer VoxelTriangles { uvec2 list[]; } voxelTriangles;
 
