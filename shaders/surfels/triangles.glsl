@@ -25,7 +25,7 @@ vec3 gatheredAt(vec3 p, vec3 face) {
 }
 
 // Start of rays above their surface, as a share of the height that keeps them off its voxels.
-const float TRIANGLE_BIAS = 0.1;
+const float TRIANGLE_BIAS = 0.3;
 
 // First triangle hit by a straight ray. Returns radiance and 1, or 0 on a miss.
 vec4 traceTriangles(ConeOrigin o, vec3 d, RayUse use) {
