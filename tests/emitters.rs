@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{assert_clean, experiment, floats, home, lab, mean, root, scene};
+use common::{assert_clean, experiment, floats, home, lab, mean, prepare, root, scene};
 use conelab::experiment::{CameraChoice, PlacedCamera};
 use conelab::measure::reference::{Goal, gather};
 use conelab::scene::{
@@ -359,4 +359,40 @@ fn no_order_of_a_files_triangles_shows_in_a_hundred_lamps() {
         picture(Arc::new(own.shuffled(4))) == expected,
         "triangles in another order give another picture"
     );
+}
+
+/// A still picture of a hundred lamps, one sample a pixel: what the mean of many rounds takes away.
+#[test]
+fn places_on_lamps_are_new_in_each_round() {
+    let lab = lab(root());
+    let look = experiment(
+        "emitters",
+        (48, 27),
+        &[
+            ("voxel_dim", "32"),
+            ("gather_frames", "1"),
+            ("pixel_rays", "32"),
+            ("emitter_rays", "1"),
+        ],
+    );
+    let mut session = prepare(&lab, &look, &["diffuseIndirect"]);
+    let mut seen = 0;
+    // Light has converged after 77 frames, and the mean of pixels begins.
+    let [first, many] = [79, 120].map(|count| {
+        while seen < count {
+            session.frame(0.0).unwrap();
+            seen += 1;
+        }
+        session.finish().unwrap();
+        floats(&mut session, "diffuseIndirect", 0)
+    });
+    let apart = |(a, b): (&[f32; 4], &[f32; 4])| {
+        let channels = a[..3].iter().zip(&b[..3]);
+        channels.map(|(a, b)| f64::from((a - b).abs())).sum::<f64>()
+    };
+    let noise = first.iter().zip(&many).map(apart).sum::<f64>() / (3.0 * many.len() as f64);
+    let noise = noise / mean(&many);
+    println!("noise of one sample: {noise:.4}");
+    assert!(noise > 0.05, "{noise:.4}: all rounds take the same samples");
+    assert_clean(&lab);
 }

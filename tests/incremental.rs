@@ -147,7 +147,7 @@ impl Pair {
             }
             9 => {
                 let (file, layer) = (
-                    home.join("shaders/inject/inject.glsl"),
+                    home.join("shaders/voxels/packing.glsl"),
                     if a < 0.5 { "0.12" } else { "0.01" },
                 );
                 let text = std::fs::read_to_string(&file).unwrap();
