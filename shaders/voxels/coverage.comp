@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Coverage of each fragment, merged into the coverage mask and the front layer of its side. The merge comes
-// after, because it leaves out what front layers hide. Replaces the fragment's triangle by its coverage.
+// after, because it leaves out what front layers hide. Replaces the fragment's cell by its side, and its
+// triangle by its coverage.
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "voxels/bricks.glsl"
@@ -35,7 +36,9 @@ Coverage mergedCoverage(uint i) {
         return Coverage(uvec2(0), 0, 0.0);
     }
     vec3 normal = unpackDirection(direction);
-    uint axis = axisOf(normal), side = sideOf(normal, axis), base = surfelBase(surfelOf(found, axis));
+    uint axis = axisOf(normal), side = sideOf(normal, axis), surfel = surfelOf(found, axis);
+    uint base = surfelBase(surfel);
+    voxelFragments.list[i].x = sideIndex(surfel, side);
     uvec2 triangle = voxelTriangles.list[i];
     Coverage coverage = fragmentCoverage(triangle, stored, axis, unpackOffset(direction));
     if (coverage.weight == 0 || SIDES == 1) return coverage; // front layers and masks need two sides

@@ -3,7 +3,6 @@
 // Merges fragments into their surfels (thesis, Section 4.1.1, last paragraphs). modules/merge has the rules.
 #include "params.glsl"
 #include "volume/volume.glsl"
-#include "voxels/bricks.glsl"
 #include "surfels/surfels.glsl"
 #include "voxels/layers.glsl"
 #include "voxels/shares.glsl"
@@ -30,15 +29,13 @@ void main() {
         Layer layer = unpackLayer(voxelTriangles.list[i]);
         if (layer.weight == 0) continue;
         uvec4 fragment = voxelFragments.list[i];
-        vec3 normal = unpackDirection(fragment.z);
-        uint axis = axisOf(normal), side = sideOf(normal, axis),
-            surfel = surfelOf(foundAtStored(unpackCell(fragment.x)), axis);
+        uint surfel = fragment.x / SIDES, side = fragment.x % SIDES;
         if (SIDES > 1) {
             uint front = surfelData(frontLayerWord(surfelBase(surfel), side));
             layer.weight = visibleWeight(layer, front, side);
         }
         if (layer.weight == 0) continue;
-        merge(sideBase(surfel, side), unpackColor(fragment.y), normal, layer.offset, fragment.w,
-            layer.weight);
+        merge(sideBase(surfel, side), unpackColor(fragment.y), unpackDirection(fragment.z), layer.offset,
+            fragment.w, layer.weight);
     }
 }

@@ -38,7 +38,7 @@ layout(std430) buffer VoxelCounter {
 
 // Fragments in no particular order: cell, colour, normal and offset, emission. voxelTriangles has each
 // fragment's triangle: its draw, and its first position in `indices`. After coverage.comp it has the coverage
-// instead (voxels/layers.glsl).
+// (voxels/layers.glsl), and voxelFragments the index of the side instead of the cell.
 layout(std430) buffer VoxelFragments { uvec4 list[]; } voxelFragments;
 layout(std430) buffer VoxelTriangles { uvec2 list[]; } voxelTriangles;
 
