@@ -160,26 +160,19 @@ fn steps((low, high): (f64, f64)) -> Vec<f64> {
         .collect()
 }
 
-/// Round numbers at equal ratios in a range, 3 to about 12.
+/// Round numbers of a logarithmic axis, 2 to about 12. Where a range is too short for four at about
+/// equal ratios, they are at equal distances.
 pub fn ticks((low, high): (f64, f64)) -> Vec<f64> {
-    let inside = |steps: &[f64]| -> Vec<f64> {
+    let inside = |digits: &[f64]| -> Vec<f64> {
         let decades = (low.log10().floor() as i32)..=(high.log10().ceil() as i32);
-        let all = decades.flat_map(|e| steps.iter().map(move |s| s * 10f64.powi(e)));
+        let all = decades.flat_map(|e| digits.iter().map(move |s| s * 10f64.powi(e)));
         all.filter(|v| (low..=high).contains(v)).collect()
     };
-    let tenths: Vec<f64> = (10..100).map(|i| f64::from(i) / 10.0).collect();
-    let halves: Vec<f64> = (2..20).map(|i| f64::from(i) / 2.0).collect();
-    let sets: [&[f64]; 5] = [
-        &[1.0],
-        &[1.0, 3.0],
-        &[1.0, 2.0, 3.0, 5.0, 7.0],
-        &halves,
-        &tenths,
-    ];
+    let sets: [&[f64]; 3] = [&[1.0], &[1.0, 3.0], &[1.0, 2.0, 3.0, 5.0, 7.0]];
     sets.iter()
         .map(|s| inside(s))
         .find(|t| t.len() >= 4)
-        .unwrap_or_else(|| inside(&tenths))
+        .unwrap_or_else(|| steps((low, high)))
 }
 
 /// Axes with their titles and numbers.
@@ -328,4 +321,31 @@ fn legend(area: &Area, names: &IndexSet<&str>) -> Result<(), Failure> {
 /// Colour of the entry with this index.
 pub fn color(i: usize) -> RGBColor {
     COLORS[i % COLORS.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ticks;
+
+    #[test]
+    fn logarithmic_axes_have_a_few_marks_apart_from_each_other() {
+        for (low, ratio) in (0..60).flat_map(|i| (1..80).map(move |k| (i, k))) {
+            let low = 0.003 * 1.13f64.powi(low);
+            let ratio = 1.08f64.powi(ratio); // up to 470
+            let marks = ticks((low, low * ratio));
+            assert!(
+                (2..=12).contains(&marks.len()),
+                "{low} to {}: {marks:?}",
+                low * ratio
+            );
+            // As a part of the axis.
+            let part = |a: f64, b: f64| (b / a).ln() / ratio.ln();
+            let least = marks.windows(2).map(|m| part(m[0], m[1])).reduce(f64::min);
+            assert!(
+                least.is_some_and(|l| l > 0.04),
+                "{low} to {}: {marks:?}",
+                low * ratio
+            );
+        }
+    }
 }
