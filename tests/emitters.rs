@@ -361,7 +361,7 @@ fn no_order_of_a_files_triangles_shows_in_a_hundred_lamps() {
     );
 }
 
-/// A still picture of a hundred lamps, one sample a pixel: what the mean of many rounds takes away.
+/// Noise that the mean of many rounds takes from a still picture of a hundred lamps, one sample a pixel.
 #[test]
 fn places_on_lamps_are_new_in_each_round() {
     let lab = lab(root());

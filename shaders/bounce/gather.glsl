@@ -27,7 +27,7 @@ SideShifts shiftsOf(VolumeMap map, ivec3 cell, uint axis, uint side, uint round)
     vec4 first = next4(random), second = next4(random);
     float turn = float(round);
     first.xyz += turn * vec3(0.6180339887, 0.4142135624, 0.7320508076);
-    second += turn * vec4(0.2360679775, 0.6457513111, 0.3166247904, 0.6055512755);
+    second += roundShift(round);
     uint number = patternIndex(lateral), samples = uint(params.bounce_emitter_rays);
     return SideShifts(r2(number * uint(params.bounce_directions), first.xy),
         fract(first.z + float(number * samples) * 0.6180339887),

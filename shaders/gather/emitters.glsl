@@ -38,6 +38,11 @@ vec4 r4(uint number, vec4 shift) {
         + float(number & 0xffffu) * vec4(0.8566748838, 0.7338918566, 0.6287067210, 0.5385972572));
 }
 
+// Shift of that sequence from the first round to another.
+vec4 roundShift(uint round) {
+    return float(round) * vec4(0.2360679775, 0.6457513111, 0.3166247904, 0.6055512755);
+}
+
 // Weighted reservoir of one emitter sample (resampled importance sampling, Talbot et al. 2005).
 struct Reservoir {
     float xi; // random number, stretched again at each candidate

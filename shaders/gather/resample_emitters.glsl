@@ -39,9 +39,7 @@ EmitterSample resampleEmitter(ConeOrigin o, Surface s, vec3 face, vec3 v, int nu
     EmitterSample best;
     best.cosine = 0.0;
     light = EmitterLight(vec3(0.0), vec3(0.0));
-    // As directions, samples are new in each round.
-    vec4 turns = float(pixelRound()) * vec4(0.2360679775, 0.6457513111, 0.3166247904, 0.6055512755),
-         shift = r4(patternBlock(), fract(0.5 + turns));
+    vec4 shift = r4(patternBlock(), fract(0.5 + roundShift(pixelRound())));
     Reservoir r = Reservoir(fract(shift.x + float(pointIndex(number) & 0xffffu) * 0.6180339887), 0.0, 0.0);
     for (int k = 0; k < CANDIDATES; k++) {
         EmitterSample emitter = sampleEmitter(o.surface, r4(pointIndex(number * CANDIDATES + k), shift));

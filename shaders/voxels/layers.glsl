@@ -4,8 +4,8 @@
 #include "voxels/packing.glsl"
 #include "surfels/cover.glsl"
 
-// What is farther beneath the front layer can be seen past its edges, as from one slat of a blind to the next
-// [cells].
+// Surfaces farther beneath the front layer can be seen past its edges, as from one slat of a blind to the
+// next [cells].
 const float HIDDEN_DEPTH = 0.3;
 
 // One fragment's surface, alone.
@@ -15,10 +15,18 @@ struct Layer {
     float offset; // from the cell centre, along the axis [cells]
 };
 
-uvec2 packLayer(Coverage coverage) {
-    uint word = min(coverage.weight, 0x7ffu);
-    for (uint i = 0; i < 4; i++) word |= uint(coveredTexels(quarterOf(coverage.mask, i))) << 11 + 5 * i;
-    return uvec2(word, floatBitsToUint(coverage.offset));
+Layer layerOf(Coverage coverage) {
+    Layer layer;
+    layer.weight = coverage.weight;
+    for (uint i = 0; i < 4; i++) layer.covered[i] = coveredTexels(quarterOf(coverage.mask, i));
+    layer.offset = coverage.offset;
+    return layer;
+}
+
+uvec2 packLayer(Layer layer) {
+    uint word = min(layer.weight, 0x7ffu);
+    for (uint i = 0; i < 4; i++) word |= uint(layer.covered[i]) << 11 + 5 * i;
+    return uvec2(word, floatBitsToUint(layer.offset));
 }
 
 Layer unpackLayer(uvec2 packed) {
@@ -29,7 +37,8 @@ Layer unpackLayer(uvec2 packed) {
     return layer;
 }
 
-// Weight of what the front layer leaves visible. Otherwise the floor under tiles would reflect too.
+// Weight of the part that the front layer does not hide. With the whole weight, the floor under tiles would
+// reflect too.
 // A layer and the front layer are taken to overlap as little as their areas allow: where they do not fill the
 // quarter together, as two faces of a convex surface do not, nothing is hidden.
 uint visibleWeight(Layer layer, uint front, uint side) {

@@ -22,10 +22,10 @@ void merge(uint base, vec3 color, vec3 normal, float offset, uint emission, uint
 }
 
 void main() {
-    uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    for (uint step = gl_GlobalInvocationID.x; step < shareSteps(); step += stride) {
-        uint i = fragmentOfStep(step);
-        if (i >= fragmentCount()) continue;
+    uint count = fragmentCount(), share = shareOf(count), stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    for (uint step = gl_GlobalInvocationID.x; step < share * SHARES; step += stride) {
+        uint i = fragmentOfStep(step, share);
+        if (i >= count) continue;
         Layer layer = unpackLayer(voxelTriangles.list[i]);
         if (layer.weight == 0) continue;
         uvec4 fragment = voxelFragments.list[i];

@@ -10,13 +10,14 @@ uint fragmentCount() {
     return min(voxelCounter.fragments, voxelFragments.list.length());
 }
 
-// Steps of the loop, and the fragment of a step: beyond the list for some.
-uint shareSteps() {
-    return (fragmentCount() + SHARES - 1) / SHARES * SHARES;
+// Fragments of a share. The loop has SHARES times as many steps.
+uint shareOf(uint count) {
+    return (count + SHARES - 1) / SHARES;
 }
 
-uint fragmentOfStep(uint step) {
-    return step % SHARES * (shareSteps() / SHARES) + step / SHARES;
+// Fragment of a step; for some steps beyond the list.
+uint fragmentOfStep(uint step, uint share) {
+    return step % SHARES * share + step / SHARES;
 }
 
 #endif
