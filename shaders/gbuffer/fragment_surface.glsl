@@ -1,7 +1,7 @@
 // Surface of a fragment of gbuffer/surface.vert.
 #ifndef SURFACE_GLSL
 #define SURFACE_GLSL
-#include "common/scene.glsl"
+#include "common/pixel.glsl"
 #include "materials/materials.glsl"
 #include "common/brdf.glsl"
 #include "materials/normals.glsl"
@@ -19,7 +19,7 @@ Interpolants interpolants() {
 
 // Uses derivatives: call it before any return.
 Gradient gradientHere() {
-    return Gradient(dFdx(uv), dFdy(uv));
+    return Gradient(PIXEL_FOOTPRINT * dFdx(uv), PIXEL_FOOTPRINT * dFdy(uv));
 }
 
 // The triangle's normal on the viewer's side. Uses derivatives: call it before any return.

@@ -5,7 +5,7 @@
 #include "common/brdf.glsl"
 #include "gbuffer/packing.glsl"
 #include "materials/dielectrics.glsl"
-#include "common/view_ray.glsl"
+#include "common/pixel.glsl"
 
 struct GBufferSurface {
     bool any; // false: background
@@ -26,7 +26,7 @@ GBufferSurface gbufferAt(ivec2 pixel) {
     float range = texelFetch(gbufferDistance, pixel, 0).r;
     seen.any = range > 0.0;
     if (!seen.any) return seen;
-    vec3 ray = viewRay(vec2(pixel) + 0.5);
+    vec3 ray = pixelRay(pixel);
     vec4 base = texelFetch(gbufferBase, pixel, 0), normals = texelFetch(gbufferNormals, pixel, 0);
     vec4 emission = texelFetch(gbufferEmission, pixel, 0);
     seen.position = camera.position + range * ray;

@@ -3,7 +3,7 @@
 // Resolves the visibility buffer into the G-buffer. Rays of a pixel and its neighbours intersect the
 // triangle's plane (Moller and Trumbore 1997), which gives attributes and texture gradients (Schied and
 // Dachsbacher 2015).
-#include "common/scene.glsl"
+#include "common/pixel.glsl"
 #include "materials/materials.glsl"
 #include "gbuffer/packing.glsl"
 #include "materials/normals.glsl"
@@ -49,10 +49,11 @@ void main() {
     // Per ray: distance to the plane, and the barycentric weights of the second and third corner there.
     vec3 from = camera.position - a, plane = cross(e, f);
     mat3 meet = mat3(cross(from, f), cross(e, from), plane);
-    vec3 ray = rayThrough(vec2(pixel) + 0.5);
+    vec2 at_pixel = vec2(pixel) + 0.5 + pixelOffset();
+    vec3 ray = rayThrough(at_pixel);
     vec3 across = ray * meet,
-        across_x = rayThrough(vec2(pixel) + vec2(1.5, 0.5)) * meet,
-        across_y = rayThrough(vec2(pixel) + vec2(0.5, 1.5)) * meet;
+        across_x = rayThrough(at_pixel + vec2(1.0, 0.0)) * meet,
+        across_y = rayThrough(at_pixel + vec2(0.0, 1.0)) * meet;
     // Rounding dominates for triangles seen edge-on: clamp to the corners and to the rasterised depth.
     vec2 weights = clamp(across.xy / (across.z == 0.0 ? 1e-30 : across.z), 0.0, 1.0);
     float raster_depth = camera.near / uintBitsToFloat(word.y);
@@ -60,8 +61,8 @@ void main() {
         0.99 * raster_depth, 1.01 * raster_depth);
     mat2x4 uv_of = mat2x4(at[1].uv - at[0].uv, at[2].uv - at[0].uv);
     Gradient g = Gradient(
-        uv_of * (across_x.xy / across_x.z - weights),
-        uv_of * (across_y.xy / across_y.z - weights));
+        PIXEL_FOOTPRINT * uv_of * (across_x.xy / across_x.z - weights),
+        PIXEL_FOOTPRINT * uv_of * (across_y.xy / across_y.z - weights));
 
     Material m = materials.materials[draw.material];
     vec3 b = vec3(1.0 - weights.x - weights.y, weights);

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // World-space attributes for the G-buffer and forward shading. gl_Position must equal depth.vert's to the
 // bit.
-#include "common/scene.glsl"
+#include "common/pixel.glsl"
 
 layout(location = 0) out vec3 position;
 layout(location = 1) out vec3 normal;
@@ -16,7 +16,7 @@ precise gl_Position; // same operations in both shaders: no contraction, so bit-
 void main() {
     Draw draw = draws.draws[gl_InstanceIndex];
     vec3 p = toWorld(draw.instance, loadPosition(gl_VertexIndex));
-    gl_Position = camera.view_projection * vec4(p, 1.0);
+    gl_Position = sampledClip(camera.view_projection * vec4(p, 1.0));
     VertexAttributes a = loadAttributes(gl_VertexIndex);
     position = p;
     normal = normalToWorld(draw.instance, a.normal);

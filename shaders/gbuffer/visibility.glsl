@@ -2,14 +2,14 @@
 // atomic maximum resolves visibility. The including file enables the 64-bit extensions.
 #ifndef VISIBILITY_GLSL
 #define VISIBILITY_GLSL
-#include "common/scene.glsl"
+#include "common/pixel.glsl"
 
 ivec2 targetSize() {
     return ivec2(camera.size);
 }
 
 vec4 targetClip(vec3 p, uint layer) {
-    return camera.view_projection * vec4(p, 1.0);
+    return sampledClip(camera.view_projection * vec4(p, 1.0));
 }
 
 float targetNear(uint layer) {

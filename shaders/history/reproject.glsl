@@ -8,6 +8,12 @@ uniform sampler2D lastDiffuse;
 uniform sampler2D lastSpecular; // a: age [frames]
 uniform sampler2D lastDistance;
 
+// Whether pixel `at` of the last frame saw a surface at this distance, give or take `most` [m].
+bool sawSurface(ivec2 at, float range, float most) {
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(camera.size)))) return false;
+    return abs(texelFetch(lastDistance, at, 0).r - range) < most;
+}
+
 // Whether the surface was visible in the last frame, and the pixel `at` that saw it.
 //
 // The lookup takes one pixel without filtering, so that history stays sharp. The point is between pixels, and
@@ -18,15 +24,23 @@ bool reproject(GBufferSurface seen, out ivec2 at) {
     vec4 clip = camera.previous_view_projection * vec4(seen.position, 1.0);
     if (clip.w <= 0.0) return false;
     vec2 offset = r2(camera.frame % 4096u, vec2(0.0)) - 0.5;
-    vec2 middle = (clip.xy / clip.w * 0.5 + 0.5) * vec2(camera.size) - 0.5;
+    vec2 middle = (clip.xy / clip.w * 0.5 + 0.5) * vec2(camera.size) - 0.5 - pixelOffset();
     at = ivec2(floor(middle + 0.5 + 0.98 * offset));
-    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(camera.size)))) return false;
     // Distances must agree within 0.2%, plus the depth that an oblique surface spans in two pixels.
     float range = distance(seen.position, camera.previous_position);
-    float last_range = texelFetch(lastDistance, at, 0).r;
     float pixel_angle = 2.0 * tan(0.5 * camera.fov_y) / float(camera.size.y);
     float cosine = max(dot(seen.face, seen.to_viewer), 0.05);
-    return abs(last_range - range) < range * (0.002 + 2.0 * pixel_angle / cosine);
+    float most = range * (0.002 + 2.0 * pixel_angle / cosine);
+    if (sawSurface(at, range, most)) return true;
+    // At edges, pixels that sample their area see now one surface, now the other.
+    if (PIXEL_IS_BOX) {
+        ivec2 pixel = at;
+        for (int i = 0; i < 9; i++) {
+            at = pixel + ivec2(i % 3, i / 3) - 1;
+            if (sawSurface(at, range, most)) return true;
+        }
+    }
+    return false;
 }
 
 #endif

@@ -8,6 +8,7 @@
 // (reference/sky.glsl).
 #include "params.glsl"
 #include "reference/incoming.glsl"
+#include "modules/pixel.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -32,13 +33,13 @@ void main() {
     uint sample_index = uint(params.first_sample) + pass.index;
     Random random = Random(uvec4(uint(pixel.x) | uint(pixel.y) << 16, sample_index, 0, uint(params.seed)));
     vec4 u = next4(random);
-    vec2 at = vec2(pixel) + (params.pixel == PIXEL_BOX ? u.xy : vec2(0.5));
+    vec2 at = vec2(pixel) + (PIXEL_IS_BOX ? u.xy : vec2(0.5));
     vec3 d = cameraRay(at);
     // Starts at the rasteriser's near plane.
     vec3 start = camera.position + d * (camera.near / dot(d, camera.direction));
     // Rays over the pixel's area average its texels themselves; a single ray through its centre needs a
     // filtered lookup.
-    Footprint f = params.pixel == PIXEL_BOX
+    Footprint f = PIXEL_IS_BOX
         ? NO_FOOTPRINT
         : Footprint(camera.position, cameraRay(at + vec2(1, 0)), cameraRay(at + vec2(0, 1)));
     Ray ray = Ray(start, d, 1e30);

@@ -16,11 +16,11 @@ uniform sampler2D gatheredSpecular;
 uniform sampler2D smoothedDiffuse;
 uniform sampler2D smoothedSpecular; // a: weight of the pixel, less if its light is older than a change
 
-uniform writeonly image2D radiance; // total, including emission
-uniform writeonly image2D direct;
-uniform writeonly image2D diffuseIndirect;
-uniform writeonly image2D specularIndirect;
-uniform writeonly image2D occlusion; // 1: open
+uniform writeonly image2D sampledRadiance; // total, including emission
+uniform writeonly image2D sampledDirect;
+uniform writeonly image2D sampledDiffuse;
+uniform writeonly image2D sampledSpecular;
+uniform writeonly image2D sampledOpenness; // 1: open
 uniform writeonly image2D surfaceNormal; // * 0.5 + 0.5
 
 Filtered unfiltered(ivec2 pixel) {
@@ -62,13 +62,13 @@ void main() {
         total = lit + diffuse + light.specular + seen.emission;
         normal = seen.surface.normal;
     } else {
-        total = skyBehind(viewRay(vec2(pixel) + 0.5));
+        total = skyBehind(pixelRay(pixel));
     }
     float covered = seen.any ? 1.0 : 0.0;
-    imageStore(radiance, pixel, vec4(total, 1.0));
-    imageStore(direct, pixel, vec4(lit, covered));
-    imageStore(diffuseIndirect, pixel, vec4(diffuse, covered));
-    imageStore(specularIndirect, pixel, vec4(light.specular, covered));
-    imageStore(occlusion, pixel, vec4(vec3(light.hemisphere.a), 1.0));
+    imageStore(sampledRadiance, pixel, vec4(total, 1.0));
+    imageStore(sampledDirect, pixel, vec4(lit, covered));
+    imageStore(sampledDiffuse, pixel, vec4(diffuse, covered));
+    imageStore(sampledSpecular, pixel, vec4(light.specular, covered));
+    imageStore(sampledOpenness, pixel, vec4(vec3(light.hemisphere.a), 1.0));
     imageStore(surfaceNormal, pixel, vec4(normal * 0.5 + 0.5, covered));
 }
