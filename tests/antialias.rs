@@ -5,8 +5,8 @@ mod common;
 use common::{assert_clean, experiment, floats, home, lab};
 use conelab::experiment::{CameraChoice, PlacedCamera};
 use conelab::lab::{Lab, Session};
-use conelab::scene::{Instance, Material, Mesh, Scene, Submesh, Vertex};
-use glam::{Mat4, Vec3};
+use conelab::scene::{Instance, Material, Mesh, Scene, Submesh, Texture, TextureFormat, Vertex};
+use glam::{Mat4, Vec3, Vec4};
 use std::sync::Arc;
 
 const SIZE: (u32, u32) = (64, 48);
@@ -17,6 +17,7 @@ fn shining_square() -> Scene {
         position: [x - 0.5, 0.0, z - 0.5],
         normal: [0.0, 1.0, 0.0],
         tangent: [1.0, 0.0, 0.0, 1.0],
+        uv: [x, z],
         ..Vertex::default()
     };
     Scene {
@@ -86,7 +87,33 @@ fn coverage(camera: &PlacedCamera) -> Vec<f32> {
         .collect()
 }
 
+/// The square with every other column of 64 texels cut out, two texels a pixel. Its smaller mips cut out everything.
+fn striped_square() -> Scene {
+    let mut scene = shining_square();
+    let level = |edge: usize| {
+        let alpha = |i: usize| if edge == 64 && i % 2 == 0 { 255 } else { 0 };
+        (0..edge * edge)
+            .flat_map(|i| [255, 255, 255, alpha(i)])
+            .collect()
+    };
+    scene.textures.push(Texture {
+        name: "stripes".into(),
+        width: 64,
+        height: 64,
+        format: TextureFormat::Rgba8Srgb,
+        mips: (0..7).map(|l| level(64 >> l)).collect(),
+    });
+    scene.materials[0].base_color = Vec4::ONE;
+    scene.materials[0].base_color_texture = Some(0);
+    scene.materials[0].alpha_cutoff = 0.5;
+    scene
+}
+
 fn session(lab: &Lab, pixel: &str, rasteriser: &str) -> Session {
+    session_in(lab, shining_square(), pixel, rasteriser)
+}
+
+fn session_in(lab: &Lab, scene: Scene, pixel: &str, rasteriser: &str) -> Session {
     let set = [
         ("pixel", pixel),
         ("gbuffer", rasteriser),
@@ -95,7 +122,7 @@ fn session(lab: &Lab, pixel: &str, rasteriser: &str) -> Session {
     let mut look = experiment("square", SIZE, &set);
     look.camera = CameraChoice::Placed(camera(0.0, 0.0));
     let wanted = vec!["radiance".to_owned()];
-    lab.prepare(&look, Arc::new(shining_square()), |_| Ok(wanted))
+    lab.prepare(&look, Arc::new(scene), |_| Ok(wanted))
         .unwrap()
         .0
 }
@@ -135,6 +162,22 @@ fn a_still_picture_is_filtered_by_a_box() {
         assert!(worst > 0.4 && rms > 0.2, "the scene has no edges");
         let (worst, rms, missing) = summary("box", 96);
         assert!(worst < 0.06 && rms < 0.03 && missing.abs() < 0.001);
+    }
+    assert_clean(&lab);
+}
+
+#[test]
+fn masks_finer_than_a_pixel_keep_their_share() {
+    let home = home();
+    let lab = lab(home.path());
+    let area: f32 = coverage(&camera(0.0, 0.0)).iter().sum();
+    for rasteriser in ["compute", "raster"] {
+        let mut session = session_in(&lab, striped_square(), "box", rasteriser);
+        session.run(96).unwrap();
+        let shining = floats(&mut session, "radiance", 0).into_iter();
+        let share = shining.map(|p| p[0]).sum::<f32>() / area;
+        println!("{rasteriser}: {share:.4} of the square is left");
+        assert!((share - 0.5).abs() < 0.01);
     }
     assert_clean(&lab);
 }

@@ -16,6 +16,10 @@ float targetNear(uint layer) {
     return camera.near;
 }
 
+float targetFootprint() {
+    return PIXEL_FOOTPRINT;
+}
+
 uint wordOf(ivec2 pixel) {
     return uint(pixel.y) * camera.size.x + uint(pixel.x);
 }

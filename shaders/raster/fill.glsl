@@ -1,5 +1,5 @@
-// Fills the pixels of pieces. The including shader defines targetSize, isNearer (whether a depth is not
-// hidden yet) and plot (a write with depth test).
+// Fills the pixels of pieces. The including shader defines targetSize, targetFootprint (see
+// modules/pixel.glsl), isNearer (whether a depth is not hidden yet) and plot (a write with depth test).
 #ifndef RASTER_FILL_GLSL
 #define RASTER_FILL_GLSL
 #include "common/scene.glsl"
@@ -18,7 +18,8 @@ vec3 lookupAt(Piece p, Outline o, vec2 at) {
 bool isCutOut(Piece p, Outline o, vec2 at) {
     Material m = materials.materials[p.mask - 1];
     vec3 here = lookupAt(p, o, at);
-    vec2 x = lookupAt(p, o, at + vec2(1, 0)).xy - here.xy, y = lookupAt(p, o, at + vec2(0, 1)).xy - here.xy;
+    vec2 x = targetFootprint() * (lookupAt(p, o, at + vec2(1, 0)).xy - here.xy),
+        y = targetFootprint() * (lookupAt(p, o, at + vec2(0, 1)).xy - here.xy);
     return baseColor(m, Interpolants(here.xyxy, here.zzzz), Gradient(x.xyxy, y.xyxy)).a < m.alpha_cutoff;
 }
 

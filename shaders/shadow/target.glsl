@@ -16,6 +16,10 @@ float targetNear(uint layer) {
     return shadowLayers.layers[layer].near;
 }
 
+float targetFootprint() {
+    return 1.0;
+}
+
 bool isNearer(ivec2 pixel, uint layer, float depth) {
     return floatBitsToUint(depth) < imageLoad(shadowWords, ivec3(pixel, layer)).r;
 }
