@@ -4,7 +4,7 @@
 #define VISIBILITY_GLSL
 #include "common/pixel.glsl"
 
-ivec2 targetSize() {
+ivec2 targetSize(uint layer) {
     return ivec2(camera.size);
 }
 

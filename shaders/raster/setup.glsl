@@ -20,7 +20,7 @@ vec3 depthPlane(Corner a, Corner b, Corner c) {
 }
 
 void draw(Corner a, Corner b, Corner c, vec3 plane, uint triangle, uint layer, uint mask) {
-    ivec2 size = targetSize();
+    ivec2 size = targetSize(layer);
     Piece p;
     p.uv = vec2[3](a.uv, b.uv, c.uv);
     if (COLORS) p.alphas = packUnorm4x8(vec4(a.alpha, b.alpha, c.alpha, 0.0));

@@ -10,6 +10,9 @@ struct ShadowLayer {
     int finer; // layer that shows a part of this one; -1: none
     float rounding; // of depth, in addition to that of its format
     float near; // least w that is drawn
+    uint edge; // of its square in the texture [texels]
+    uint page; // layer of the texture
+    uint corner; // of the square [texels]: x | y << 16
 };
 
 layout(std430) buffer ShadowLayers { ShadowLayer layers[]; } shadowLayers;
@@ -22,10 +25,29 @@ int cubeFace(vec3 d) {
     return d.z >= 0.0 ? 4 : 5;
 }
 
+// Texels along an edge of a layer.
+float shadowEdge(int layer) {
+    return float(shadowLayers.layers[layer].edge);
+}
+
+ivec2 shadowCorner(uint layer) {
+    uint corner = shadowLayers.layers[layer].corner;
+    return ivec2(corner & 0xffffu, corner >> 16);
+}
+
+// Where the texture has a layer's position `at`. A layer that is a part of a page has neighbours: a lookup of
+// this radius [texels] stays inside.
+vec3 shadowPlace(int layer, vec2 at, float radius) {
+    ShadowLayer l = shadowLayers.layers[layer];
+    if (l.edge == params.shadow_dim) return vec3(at, l.page);
+    vec2 texel = clamp(at * float(l.edge), radius, float(l.edge) - radius) + vec2(shadowCorner(layer));
+    return vec3(texel / float(params.shadow_dim), l.page);
+}
+
 // World size of a shadow texel at p [m].
 float shadowTexel(int layer, Light light, vec3 p) {
     ShadowLayer l = shadowLayers.layers[layer];
-    return l.width * (l.perspective > 0.0 ? distance(light.position, p) : 1.0) / float(params.shadow_dim);
+    return l.width * (l.perspective > 0.0 ? distance(light.position, p) : 1.0) / float(l.edge);
 }
 
 // xy: shadow-map coordinates in [0,1]; z: depth, outside [0,1] beyond the map's ends.

@@ -47,7 +47,20 @@ float nearOf(ShadowView view) {
     return max(0.1 * (m[3].w - m[2].w / scale), 1e-7);
 }
 
+// Places a layer in the texture. A directional light has whole pages. Each view of a lamp has an equal square
+// of a page, or a corner of its own page if the GPU's rasteriser draws it.
+void placeIn(inout ShadowLayer layer, uint number, bool lamp, uint among) {
+    uint rows = uint(params.lamp_rows), here = among % (rows * rows);
+    layer.edge = lamp ? uint(params.shadow_dim) / rows : uint(params.shadow_dim);
+    layer.page = params.shadow_threads == 0 ? number
+        : lamp ? uint(params.whole_pages) + among / (rows * rows)
+        : among;
+    bool shares = lamp && params.shadow_threads == 1;
+    layer.corner = shares ? layer.edge * (here % rows) | layer.edge * (here / rows) << 16 : 0u;
+}
+
 void main() {
+    uint lamps = 0, wholes = 0;
 #ifdef NESTED_MAPS
     int next = int(sceneInfo.shadow_views);
 #endif
@@ -57,8 +70,11 @@ void main() {
         int views = castsAround(light) ? 6 : 1;
         for (int layer = light.shadow_view; layer < light.shadow_view + views; layer++) {
             ShadowView view = shadowViews.views[layer];
-            shadowLayers.layers[layer] = ShadowLayer(view.view_projection, view.texel_size_and_depth.x,
-                view.texel_size_and_depth.z, -1, 0.0, nearOf(view));
+            ShadowLayer l = ShadowLayer(view.view_projection, view.texel_size_and_depth.x,
+                view.texel_size_and_depth.z, -1, 0.0, nearOf(view), 0, 0, 0);
+            bool lamp = light.kind != LIGHT_DIRECTIONAL;
+            placeIn(l, layer, lamp, lamp ? lamps++ : wholes++);
+            shadowLayers.layers[layer] = l;
         }
 #ifdef NESTED_MAPS
         if (light.kind != LIGHT_DIRECTIONAL) continue;
@@ -68,8 +84,10 @@ void main() {
         for (int k = 1; k < params.nested_maps; k++) {
             width /= params.shadow_step;
             shadowLayers.layers[layer].finer = next;
-            shadowLayers.layers[next] = ShadowLayer(around(whole.view_projection, width), width, 0.0, -1,
-                ROUNDED_BITS / 16777216.0 * whole.texel_size_and_depth.x / width, 0.5);
+            ShadowLayer l = ShadowLayer(around(whole.view_projection, width), width, 0.0, -1,
+                ROUNDED_BITS / 16777216.0 * whole.texel_size_and_depth.x / width, 0.5, 0, 0, 0);
+            placeIn(l, next, false, wholes++);
+            shadowLayers.layers[next] = l;
             layer = next++;
         }
 #endif

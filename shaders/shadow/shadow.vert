@@ -12,7 +12,13 @@ layout(location = 2) out float alpha; // of the vertex colour
 void main() {
     Draw draw = draws.draws[gl_InstanceIndex];
     vec3 p = toWorld(draw.instance, loadPosition(gl_VertexIndex));
-    gl_Position = shadowLayers.layers[pass.index].view_projection * vec4(p, 1.0);
+    ShadowLayer layer = shadowLayers.layers[pass.index];
+    gl_Position = layer.view_projection * vec4(p, 1.0);
+    // A lamp's square is at the first corner of its page. Nothing reads what is drawn beyond it.
+    if (layer.edge < params.shadow_dim) {
+        float share = float(layer.edge) / float(params.shadow_dim);
+        gl_Position.xy = (gl_Position.xy + gl_Position.w) * share - gl_Position.w;
+    }
     VertexAttributes a = loadAttributes(gl_VertexIndex);
     uv = a.uv;
     alpha = a.color.a;

@@ -4,8 +4,8 @@
 
 layout(r32ui) uniform uimage2DArray shadowWords;
 
-ivec2 targetSize() {
-    return ivec2(params.shadow_dim);
+ivec2 targetSize(uint layer) {
+    return ivec2(shadowLayers.layers[layer].edge);
 }
 
 vec4 targetClip(vec3 p, uint layer) {
@@ -20,10 +20,14 @@ float targetFootprint() {
     return 1.0;
 }
 
+ivec3 texelOf(ivec2 pixel, uint layer) {
+    return ivec3(pixel + shadowCorner(layer), shadowLayers.layers[layer].page);
+}
+
 bool isNearer(ivec2 pixel, uint layer, float depth) {
-    return floatBitsToUint(depth) < imageLoad(shadowWords, ivec3(pixel, layer)).r;
+    return floatBitsToUint(depth) < imageLoad(shadowWords, texelOf(pixel, layer)).r;
 }
 
 void plot(ivec2 pixel, uint layer, float depth, uint triangle) {
-    imageAtomicMin(shadowWords, ivec3(pixel, layer), floatBitsToUint(depth));
+    imageAtomicMin(shadowWords, texelOf(pixel, layer), floatBitsToUint(depth));
 }

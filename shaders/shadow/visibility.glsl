@@ -8,7 +8,7 @@
 
 // Mean of the taps around `at`. slope: change of depth over the receiver [depth per map width].
 float shadowTaps(int layer, vec3 at, vec2 slope) {
-    float texel = 1.0 / float(params.shadow_dim);
+    float texel = 1.0 / shadowEdge(layer);
     int r = SHADOW_FILTER == SHADOW_FILTER_NEAREST ? 0
         : SHADOW_FILTER == SHADOW_FILTER_PCF3 ? 1
         : 2;

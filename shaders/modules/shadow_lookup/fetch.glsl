@@ -3,7 +3,7 @@
 uniform sampler2DArray shadowDepths;
 
 float shadowDepth(int layer, vec2 at) {
-    return textureLod(shadowDepths, vec3(at, layer), 0.0).r;
+    return textureLod(shadowDepths, shadowPlace(layer, at, 0.5), 0.0).r;
 }
 
 float shadowLit(int layer, vec3 at) {
@@ -12,12 +12,12 @@ float shadowLit(int layer, vec3 at) {
 
 // Depths of the four texels around a position, in the order of textureGather: (0, 1), (1, 1), (1, 0), (0, 0).
 vec4 shadowDepthsAround(int layer, vec2 at) {
-    return textureGather(shadowDepths, vec3(at, layer));
+    return textureGather(shadowDepths, shadowPlace(layer, at, 1.0));
 }
 
 float shadowBlended(int layer, vec3 at) {
-    vec4 lit = vec4(lessThanEqual(vec4(at.z), textureGather(shadowDepths, vec3(at.xy, layer))));
-    vec2 between = fract(at.xy * float(params.shadow_dim) - 0.5);
+    vec4 lit = vec4(lessThanEqual(vec4(at.z), shadowDepthsAround(layer, at.xy)));
+    vec2 between = fract(at.xy * shadowEdge(layer) - 0.5);
     vec2 columns = mix(lit.wx, lit.zy, between.x); // upper, lower row
     return mix(columns.x, columns.y, between.y);
 }

@@ -25,7 +25,7 @@ vec2 planeSlope(int layer, vec3 p, vec3 q, vec3 n, vec3 to_light, float reach) {
 const float CLOSE = 4.0;
 
 bool hiddenByItself(int layer, vec3 q, vec2 slope, float deep) {
-    vec2 texel = vec2(1.0 / float(params.shadow_dim));
+    vec2 texel = vec2(1.0 / shadowEdge(layer));
     vec2 first = (floor(q.xy / texel - 0.5) + 0.5) * texel;
     vec4 depths = shadowDepthsAround(layer, first + 0.5 * texel);
     float depth = q.z + dot(slope, first - q.xy);
@@ -47,10 +47,10 @@ float lightVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     vec3 from = offSurface(p, n, to_light, params.shadow_bias * texel);
     vec3 q = shadowPositionBeyond(layer, from);
     // 1/64 of the map's width.
-    vec2 slope = planeSlope(layer, from, q, n, to_light, texel * float(params.shadow_dim) / 64.0);
+    vec2 slope = planeSlope(layer, from, q, n, to_light, texel * shadowEdge(layer) / 64.0);
     q.z = clamp(q.z, 0.0, 1.0) - params.shadow_rounding - shadowLayers.layers[layer].rounding;
     // Samples at texel centres, where a bilinear lookup returns a single texel.
-    vec2 centre = (floor(q.xy * float(params.shadow_dim)) + 0.5) * (1.0 / float(params.shadow_dim));
+    vec2 centre = (floor(q.xy * shadowEdge(layer)) + 0.5) * (1.0 / shadowEdge(layer));
     float lit = shadowTaps(layer, vec3(centre, q.z + dot(slope, centre - q.xy)), slope);
     if (lit == 1.0) return lit;
     float deep =
