@@ -126,6 +126,15 @@ struct DeviceArgs {
     /// Part of a device's name, or its number in `conelab devices`.
     #[arg(long, env = "CONELAB_DEVICE")]
     device: Option<String>,
+    /// Optional features that are not used even if the device has them: geometry, int64_atomics and others
+    /// (repeatable, or separated by commas). An unknown name lists all.
+    #[arg(
+        long,
+        env = "CONELAB_WITHOUT",
+        value_name = "FEATURE",
+        value_delimiter = ','
+    )]
+    without: Vec<String>,
     /// Enable the Vulkan validation layer; any message is an error.
     #[arg(long, env = "CONELAB_VALIDATION")]
     validate: bool,
@@ -150,6 +159,7 @@ impl DeviceArgs {
         GpuOptions {
             device: self.device.clone(),
             validation: self.validate,
+            without: self.without.clone(),
             patience: self.hang_after,
             ..GpuOptions::default()
         }

@@ -19,6 +19,8 @@ pub struct GpuOptions {
     pub device: Option<String>,
     /// Enables the validation layer with synchronization validation.
     pub validation: bool,
+    /// Optional features that are not used, even if the device has them.
+    pub without: Vec<String>,
     /// Folder for the pipeline cache; none when absent.
     pub cache: Option<PathBuf>,
     /// Time limit of a frame before the device counts as hung; ten times longer on software
@@ -554,7 +556,8 @@ impl Gpu {
             None
         };
         let physical = choose(&instance, options.device.as_deref())?;
-        let info = describe(&instance, physical);
+        let mut info = describe(&instance, physical);
+        super::mask::apply(&mut info, &options.without)?;
         let family = queue_family(&instance, physical).unwrap_or(0);
         let presents = display.is_some();
         let device = create_device(&instance, physical, family, &info.features, presents)?;

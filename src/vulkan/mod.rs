@@ -11,6 +11,7 @@ mod debug;
 mod executable;
 pub(crate) mod format;
 mod gpu;
+mod mask;
 mod memory;
 mod painter;
 mod pipeline;
@@ -52,6 +53,14 @@ pub enum VulkanError {
         wanted: String,
         /// The devices found, with the reason why each was rejected.
         found: String,
+    },
+    /// A feature to be masked is unknown.
+    #[error("there is no optional feature '{name}'; --without (CONELAB_WITHOUT) takes {names}")]
+    NoFeature {
+        /// The name given.
+        name: String,
+        /// All names.
+        names: String,
     },
     /// The requested validation layer is not installed.
     #[error(

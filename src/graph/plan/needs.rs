@@ -28,13 +28,14 @@ pub(super) fn check(
         for (needed, available, what) in needs(pass, link, device) {
             if needed && !available {
                 let (name, device) = (&pass.name, &device.name);
-                let because = because(pass, set.params);
+                let choices = choices(pass, set);
+                let because = because(&choices);
                 let message = format!(
                     "pass '{}' needs {what}, which {device} does not have{because}",
                     name.value
                 );
                 let error = set.graph.sources.error(name.at, message);
-                errors.push(error.help(instead(pass, set.params)));
+                errors.push(error.help(instead(&choices)));
             }
         }
     }
@@ -96,20 +97,31 @@ fn needs(pass: &PassDecl, link: &Linked, device: &DeviceInfo) -> [(bool, bool, &
     ]
 }
 
-fn choices<'p>(
-    pass: &'p PassDecl,
-    params: &'p Params,
-) -> impl Iterator<Item = (&'p str, &'p Value, &'p [String])> {
-    let variables = pass.conditions().flat_map(|ex| ex.value.variables());
-    variables.filter_map(|v| {
-        let i = params.index(v)?;
-        let options = params.list[i].kind.options();
-        (!options.is_empty()).then(|| (params.list[i].name.as_str(), &params.values[i], options))
-    })
+/// Choices without which a pass would not run: name, value, and the options that leave it out.
+fn choices<'p>(pass: &PassDecl, set: &Evaluated<'p>) -> Vec<(&'p str, &'p Value, Vec<&'p str>)> {
+    let params: &'p Params = set.params;
+    let leaves_out = |i: usize, option: &String| {
+        let mut changed = params.clone();
+        changed.values[i] = Value::Choice(option.clone());
+        let changed = Evaluated::new(set.graph, &changed, set.env.clone());
+        pass.conditions()
+            .any(|ex| ex.value.eval(&changed.env) == Ok(0.0))
+    };
+    let choices = params.list.iter().zip(&params.values).enumerate();
+    choices
+        .map(|(i, (param, value))| {
+            let options = param.kind.options().iter();
+            let options = options.filter(|o| Value::Choice((*o).clone()) != *value);
+            let options = options.filter(|o| leaves_out(i, o)).map(String::as_str);
+            (param.name.as_str(), value, options.collect::<Vec<_>>())
+        })
+        .filter(|(_, _, options)| !options.is_empty())
+        .collect()
 }
 
-fn because(pass: &PassDecl, params: &Params) -> String {
-    let list: Vec<String> = choices(pass, params)
+fn because(choices: &[(&str, &Value, Vec<&str>)]) -> String {
+    let list: Vec<String> = choices
+        .iter()
         .map(|(name, value, _)| format!("{name} is {value}"))
         .collect();
     if list.is_empty() {
@@ -119,16 +131,10 @@ fn because(pass: &PassDecl, params: &Params) -> String {
     }
 }
 
-fn instead(pass: &PassDecl, params: &Params) -> Option<String> {
-    let list: Vec<String> = choices(pass, params)
-        .map(|(name, value, options)| {
-            let others: Vec<&str> = options
-                .iter()
-                .map(String::as_str)
-                .filter(|o| Value::Choice((*o).to_string()) != *value)
-                .collect();
-            format!("--set {name}={}", others.join("|"))
-        })
+fn instead(choices: &[(&str, &Value, Vec<&str>)]) -> Option<String> {
+    let list: Vec<String> = choices
+        .iter()
+        .map(|(name, _, options)| format!("--set {name}={}", options.join("|")))
         .collect();
     (!list.is_empty()).then(|| format!("use {}", list.join(" or ")))
 }
