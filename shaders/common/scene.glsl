@@ -87,6 +87,13 @@ vec3 toWorld(uint instance, vec3 position) {
     return (instances.instances[instance].model * vec4(position, 1.0)).xyz;
 }
 
+// Displacement of a point of an instance since the last frame [m]. Deforming meshes have no previous pose.
+vec3 displacement(uint instance, vec3 position) {
+    mat4 before = instances.instances[instance].previous_model;
+    if (before[3][3] == 0.0) return vec3(0.0);
+    return ((instances.instances[instance].model - before) * vec4(position, 1.0)).xyz;
+}
+
 vec3 normalToWorld(uint instance, vec3 normal) {
     return mat3(instances.instances[instance].normal_matrix) * normal;
 }

@@ -12,6 +12,7 @@ layout(location = 2) in vec4 tangent;
 layout(location = 3) in vec4 uv;
 layout(location = 4) flat in uint material;
 layout(location = 5) in vec4 color;
+layout(location = 6) in vec3 motion; // since the last frame [m]
 
 Interpolants interpolants() {
     return Interpolants(uv, color);

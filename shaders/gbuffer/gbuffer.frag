@@ -9,6 +9,7 @@ layout(location = 0) out vec4 gbufferBase;
 layout(location = 1) out vec4 gbufferNormals;
 layout(location = 2) out vec4 gbufferEmission;
 layout(location = 3) out float gbufferDistance;
+layout(location = 4) out vec4 gbufferMotion;
 
 void main() {
     Material m = materials.materials[material];
@@ -20,4 +21,5 @@ void main() {
     gbufferNormals = vec4(packNormal(shadingNormal(m, g, face)), packNormal(face));
     gbufferEmission = vec4(emission(m, interpolants(), g), packMetallic(rm.y, dielectricIndex(m)));
     gbufferDistance = length(to_viewer);
+    gbufferMotion = vec4(motion, 0.0);
 }

@@ -3,6 +3,7 @@
 // Resolves the visibility buffer into the G-buffer. Rays of a pixel and its neighbours intersect the
 // triangle's plane (Moller and Trumbore 1997), which gives attributes and texture gradients (Schied and
 // Dachsbacher 2015).
+#include "params.glsl"
 #include "common/pixel.glsl"
 #include "materials/materials.glsl"
 #include "gbuffer/packing.glsl"
@@ -16,6 +17,7 @@ uniform writeonly image2D gbufferBase;
 uniform writeonly image2D gbufferNormals;
 uniform writeonly image2D gbufferEmission;
 uniform writeonly image2D gbufferDistance;
+uniform writeonly image2D gbufferMotion;
 uniform writeonly image2D visibleDepth;
 
 // Ray through a point of the image; not unit length.
@@ -40,9 +42,9 @@ void main() {
     uvec2 t = triangles.list[word.x];
     Draw draw = draws.draws[t.x];
     uvec3 vertex = uvec3(indices.indices[t.y], indices.indices[t.y + 1], indices.indices[t.y + 2]);
-    vec3 a = toWorld(draw.instance, loadPosition(vertex.x));
-    vec3 e = toWorld(draw.instance, loadPosition(vertex.y)) - a,
-        f = toWorld(draw.instance, loadPosition(vertex.z)) - a;
+    mat3 local = mat3(loadPosition(vertex.x), loadPosition(vertex.y), loadPosition(vertex.z));
+    vec3 a = toWorld(draw.instance, local[0]);
+    vec3 e = toWorld(draw.instance, local[1]) - a, f = toWorld(draw.instance, local[2]) - a;
     VertexAttributes at[3] =
         VertexAttributes[3](loadAttributes(vertex.x), loadAttributes(vertex.y), loadAttributes(vertex.z));
 
@@ -78,4 +80,6 @@ void main() {
         vec4(packNormal(mappedNormal(m, here, g, normal, tangent, face)), packNormal(face)));
     imageStore(gbufferEmission, pixel, vec4(emission(m, here, g), packMetallic(rm.y, dielectricIndex(m))));
     imageStore(gbufferDistance, pixel, vec4(depth * length(ray)));
+    if (params.moves == 1)
+        imageStore(gbufferMotion, pixel, vec4(displacement(draw.instance, local * b), 0.0));
 }

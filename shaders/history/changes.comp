@@ -45,7 +45,7 @@ void add(inout Sums sums, ivec2 pixel) {
     if (age > 0.25 * float(params.phases)) return; // see gatheredAge
     GBufferSurface seen = gbufferAt(pixel);
     ivec2 at;
-    if (!seen.any || !reproject(seen, at)) return;
+    if (!seen.any || !reproject(pixel, seen, at)) return;
     vec4 last = texelFetch(lastSpecular, at, 0);
     // Few rays are too noisy.
     if (fract(last.a) != 0.0 || mod(last.a, float(AGES)) <= age) return;

@@ -22,7 +22,7 @@ uint updateHistory(ivec2 pixel, uint index) {
         return GATHER_NOTHING;
     }
     ivec2 at;
-    bool reprojected = reproject(seen, at);
+    bool reprojected = reproject(pixel, seen, at);
     Age age = newAge(index);
     vec4 last = vec4(0.0);
     uint averaged = 0, most = mostAveraged();

@@ -4,6 +4,7 @@
 // still their mean is that of a box filter. Under a moving camera older frames are reprojected, which blurs
 // edges of one pixel, and clipped to the colours around the pixel (Salvi 2016) against ghosts.
 #include "params.glsl"
+#include "gbuffer/motion.glsl"
 #include "gbuffer/read.glsl"
 #include "history/rounds.glsl"
 
@@ -41,12 +42,17 @@ ivec2 nearestAround(ivec2 pixel) {
     return nearest;
 }
 
-// Where the pixel's centre was in the last frame [pixels]. The sky is infinitely far away.
-bool lastPlace(ivec2 pixel, out vec2 place) {
-    ivec2 at = nearestAround(pixel);
+// Displacement of what a pixel shows since the last frame [m].
+vec3 motionOf(ivec2 pixel) {
+    return texelFetch(gbufferDistance, pixel, 0).r > 0.0 ? motionAt(pixel) : vec3(0.0);
+}
+
+// Where the pixel's centre was in the last frame [pixels]; `at` is the pixel that it moves with. The sky is
+// infinitely far away.
+bool lastPlace(ivec2 pixel, ivec2 at, out vec2 place) {
     float range = texelFetch(gbufferDistance, at, 0).r;
     vec3 ray = pixelRay(at);
-    vec4 point = range > 0.0 ? vec4(camera.position + range * ray, 1.0) : vec4(ray, 0.0);
+    vec4 point = range > 0.0 ? vec4(camera.position + range * ray - motionAt(at), 1.0) : vec4(ray, 0.0);
     vec4 clip = camera.previous_view_projection * point;
     place = (clip.xy / clip.w * 0.5 + 0.5) * vec2(camera.size) - vec2(at - pixel) - pixelOffset();
     return clip.w > 0.0 && all(greaterThanEqual(place, vec2(0.0))) && all(lessThan(place, vec2(camera.size)));
@@ -82,10 +88,11 @@ void main() {
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
     vec4 now = texelFetch(samples, pixel, 0), last = vec4(0.0);
     vec2 place;
-    bool still = cameraIsStill();
+    ivec2 nearest = nearestAround(pixel);
+    bool still = cameraIsStill() && motionOf(nearest) == vec3(0.0);
     // Exact: a lookup between pixels would blur.
     if (still) last = texelFetch(lastMean, pixel, 0);
-    else if (lastPlace(pixel, place)) last = lastMeanAt(place);
+    else if (lastPlace(pixel, nearest, place)) last = lastMeanAt(place);
     if (!still || camera.still_frames <= uint(params.phases)) {
         last.rgb = clipped(last.rgb, pixel);
         last.a = min(last.a, MOVING_FRAMES);

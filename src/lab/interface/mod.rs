@@ -94,6 +94,10 @@ const VARIABLES: &[Variable] = &[
     ("light_count", |f| f.lights.len() as f64),
     ("area_lights", |f| area_light_count(&f.lights).into()),
     ("triangle_count", |f| f.scene.triangle_count() as f64),
+    ("moving_instances", |f| {
+        let moving = f.scene.instances.iter().filter(|i| i.mover.is_some());
+        moving.count() as f64
+    }),
     ("emitting_triangle_count", |f| {
         f.scene.emitting_triangle_count() as f64
     }),
