@@ -135,6 +135,9 @@ struct DeviceArgs {
         value_delimiter = ','
     )]
     without: Vec<String>,
+    /// Memory that a graph may use, GiB; the device's when absent. Graphs that need more are refused.
+    #[arg(long, env = "CONELAB_MEMORY", value_name = "GIB", value_parser = gibibytes)]
+    memory: Option<u64>,
     /// Enable the Vulkan validation layer; any message is an error.
     #[arg(long, env = "CONELAB_VALIDATION")]
     validate: bool,
@@ -142,6 +145,13 @@ struct DeviceArgs {
     /// software device); default: 20 in the window, no limit otherwise.
     #[arg(long, env = "CONELAB_HANG_AFTER", value_name = "SECONDS", value_parser = seconds)]
     hang_after: Option<Duration>,
+}
+
+/// Bytes from GiB.
+fn gibibytes(text: &str) -> Result<u64, String> {
+    let gib = text.parse().ok().filter(|g: &f64| *g > 0.0 && *g < 1e6);
+    gib.map(|g| (g * (1u64 << 30) as f64) as u64)
+        .ok_or_else(|| "must be a number of GiB above 0".into())
 }
 
 /// A span of time from seconds, at least a millisecond.
@@ -160,6 +170,7 @@ impl DeviceArgs {
             device: self.device.clone(),
             validation: self.validate,
             without: self.without.clone(),
+            memory: self.memory,
             patience: self.hang_after,
             ..GpuOptions::default()
         }

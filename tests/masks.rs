@@ -135,7 +135,7 @@ fn refusals_name_the_feature_and_a_way_out() {
 
 #[test]
 fn unknown_masks_list_the_known_ones() {
-    let mut command = common::conelab(&common::root().to_path_buf());
+    let mut command = common::conelab(common::root());
     command.args(["render", "configs/rays.ron", "--frames", "1", "-o", "x.png"]);
     command.env("CONELAB_WITHOUT", "geometry,ray_tracing");
     let said = common::fails(&mut command);
@@ -143,4 +143,38 @@ fn unknown_masks_list_the_known_ones() {
         said.contains("no optional feature 'ray_tracing'") && said.contains("int64_atomics"),
         "{said}"
     );
+}
+
+/// The graph at 512^3 and the largest picture does not fit a small card, and what is offered instead does.
+#[test]
+fn graphs_that_do_not_fit_say_what_would() {
+    let home = home();
+    let run = |set: &[&str], memory: &str| {
+        let mut command = common::conelab(common::root());
+        command.args([
+            "render",
+            "configs/rays.ron",
+            "--scene",
+            "cornell",
+            "--size",
+            "64x48",
+        ]);
+        command.args(["--set", "shadow_dim=256", "--frames", "1", "-o"]);
+        command.arg(home.path().join("x.png"));
+        set.iter().for_each(|s| {
+            command.args(["--set", s]);
+        });
+        command.env("CONELAB_MEMORY", memory);
+        command
+    };
+    let said = common::fails(&mut run(&["voxel_dim=256"], "0.2"));
+    println!("{said}");
+    assert!(said.contains("has 0.20 GiB of memory"), "{said}");
+    let offered = said.split("--set voxel_dim=").nth(1).expect("an offer");
+    let offered: String = offered.chars().take_while(char::is_ascii_digit).collect();
+    let value: u32 = offered.parse().unwrap();
+    assert!((16..256).contains(&value), "{value}");
+    common::succeeds(&mut run(&[&format!("voxel_dim={value}")], "0.2"));
+    let said = common::fails(&mut run(&[], "many"));
+    assert!(said.contains("must be a number of GiB"), "{said}");
 }

@@ -49,22 +49,48 @@ pub fn summary(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> String {
     let automatic = |p: &Param| Some(format!("{} {} {}", p.name, effective(set, p)?, p.unit));
     let automatic: Vec<String> = set.params.list.iter().filter_map(automatic).collect();
     list(&mut out, "automatic", &automatic);
+    let total = bytes(plan);
+    let largest = largest(graph, plan, 6);
+    let largest: Vec<_> = largest
+        .iter()
+        .map(|(name, bytes)| format!("{name} {:.1}", mib(*bytes)))
+        .collect();
+    let largest = largest.join(", ");
+    let share = of_common_card(total);
+    let _ = writeln!(
+        out,
+        "memory: {:.1} MiB ({share}); the largest: {largest}",
+        mib(total)
+    );
+    let dropped = plan.dropped.iter().map(|(pass, _)| graph.pass_name(*pass));
+    let dropped: Vec<&str> = dropped.collect();
+    list(&mut out, "left out (--barriers prints why)", &dropped);
+    out
+}
+
+/// Bytes of all textures and buffers that a plan makes.
+pub fn bytes(plan: &Plan) -> u64 {
+    plan.made().map(|res| plan.bytes_of(res)).sum::<u64>() - shared(plan).1
+}
+
+/// Names and bytes of the largest textures and buffers that a plan makes.
+pub fn largest<'g>(graph: &'g Graph, plan: &Plan, count: usize) -> Vec<(&'g str, u64)> {
     let made = plan.made();
     let mut memory: Vec<_> = made
         .map(|res| (graph.name_of(res), plan.bytes_of(res)))
         .collect();
     memory.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
-    let total = mib(memory.iter().map(|(_, bytes)| bytes).sum::<u64>() - shared(plan).1);
-    let largest = memory.iter().take(6);
-    let largest: Vec<_> = largest
-        .map(|(name, bytes)| format!("{name} {:.1}", mib(*bytes)))
-        .collect();
-    let largest = largest.join(", ");
-    let _ = writeln!(out, "memory: {total:.1} MiB; the largest: {largest}");
-    let dropped = plan.dropped.iter().map(|(pass, _)| graph.pass_name(*pass));
-    let dropped: Vec<&str> = dropped.collect();
-    list(&mut out, "left out (--barriers prints why)", &dropped);
-    out
+    memory.truncate(count);
+    memory
+}
+
+/// Memory as a share of the commonest card's: 8 GiB, of which the desktop and the scene need some
+/// too.
+pub fn of_common_card(bytes: u64) -> String {
+    format!(
+        "{:.1} % of 8 GiB",
+        bytes as f64 / (8u64 << 30) as f64 * 100.0
+    )
 }
 
 /// Adds a line with a list, unless it is empty.
@@ -181,11 +207,9 @@ pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
         let _ = write!(out, "{name:<28} {size:>22}  {format:<10} {mib:>7.1}");
         let _ = writeln!(out, "  {}", lifetime(plan, res));
     }
-    let total: u64 = plan.made().map(|res| plan.bytes_of(res)).sum();
-    let saved = shared(plan).1;
     for (title, bytes) in [
-        ("saved by memory that transient ones share", saved),
-        ("total", total - saved),
+        ("saved by memory that transient ones share", shared(plan).1),
+        ("total", bytes(plan)),
     ] {
         let _ = writeln!(out, "{title:<62} {:>10.1}", mib(bytes));
     }

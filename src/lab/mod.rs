@@ -7,6 +7,7 @@ mod emitters;
 mod interface;
 mod lighting;
 mod materials;
+mod memory;
 mod parts;
 mod scene;
 mod session;
@@ -33,7 +34,7 @@ use crate::graph::link::{Linked, Target, runs};
 use crate::graph::param::{Params, Value};
 use crate::graph::plan::{Plan, plan};
 use crate::graph::run::{Parts, Program, Update};
-use crate::graph::{Evaluated, Graph, signed};
+use crate::graph::{Evaluated, Graph, report, signed};
 use crate::metrics::MetricError;
 use crate::scene::{Scene, SceneError};
 use crate::vulkan::{ClockExtension, DeviceInfo, Features, Gpu, GpuOptions, VulkanError};
@@ -248,14 +249,21 @@ impl Lab {
             .map_err(LabError::Input)?;
         wanted.extend(graph.checked_with(&wanted));
         let viewpoint = viewpoint_of(experiment, &scene)?;
-        let plan = plan(&set, &linked, &wanted, &self.gpu.info).map_err(LabError::Input)?;
-        let rays = traces_rays(&graph, &linked, &plan);
+        let planned = plan(&set, &linked, &wanted, &self.gpu.info).map_err(LabError::Input)?;
+        let replan = |params: &Params| {
+            let set = Evaluated::new(&graph, params, surroundings.clone());
+            let Loaded { linked, .. } = self.home.with_shaders(loaded, &runs(&set)).ok()?;
+            let plan = plan(&set, &linked, &wanted, &self.gpu.info).ok()?;
+            Some(report::bytes(&plan))
+        };
+        memory::check((&graph, &params), &planned, &self.gpu.info, &replan)?;
+        let rays = traces_rays(&graph, &linked, &planned);
         let fits = |s: &&ReusableParts| {
             Arc::ptr_eq(&s.scene, &scene)
-                && s.max_edge == plan.max_edge
+                && s.max_edge == planned.max_edge
                 && (s.scene_gpu.has_rays() || !rays)
         };
-        let scene_gpu = self.scene_gpu(&scene, plan.max_edge, rays, reuse.filter(fits))?;
+        let scene_gpu = self.scene_gpu(&scene, planned.max_edge, rays, reuse.filter(fits))?;
         // What textures and buffers hold is of their scene: of another one only the pipelines are
         // taken.
         let parts = match reuse {
@@ -263,8 +271,15 @@ impl Lab {
             Some(reuse) => reuse.parts.pipelines_only(),
             None => Parts::default(),
         };
-        let values = signed(&set, &linked, &plan);
-        let program = Program::new(&self.gpu, &set, &linked, plan, &scene_gpu.resources, &parts)?;
+        let values = signed(&set, &linked, &planned);
+        let program = Program::new(
+            &self.gpu,
+            &set,
+            &linked,
+            planned,
+            &scene_gpu.resources,
+            &parts,
+        )?;
         Ok(Session {
             values,
             graph,

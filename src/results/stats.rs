@@ -1,6 +1,7 @@
 //! Measurements of a run in the program's JSON schema (`docs/stats.md`).
 
 use crate::graph::param::{OFF, Params};
+use crate::graph::report::of_common_card;
 use crate::graph::run::{Execution, FrameTimes};
 use crate::lab::Session;
 use crate::metrics::percentile;
@@ -183,13 +184,14 @@ pub fn table(stats: &Stats) -> String {
     rows.push(("total".into(), stats.total_gpu_ms));
     rows.push(("CPU record and submit".into(), stats.cpu_ms));
     format!(
-        "{} ({}), {}x{}\n{}memory of the graph: {:.1} MiB\n",
+        "{} ({}), {}x{}\n{}memory of the graph: {:.1} MiB ({})\n",
         stats.device.name,
         stats.device.driver,
         stats.size[0],
         stats.size[1],
         spreads("GPU ms", &rows),
-        stats.total_bytes as f64 / 1048576.0
+        stats.total_bytes as f64 / 1048576.0,
+        of_common_card(stats.total_bytes)
     )
 }
 

@@ -21,6 +21,8 @@ pub struct GpuOptions {
     pub validation: bool,
     /// Optional features that are not used, even if the device has them.
     pub without: Vec<String>,
+    /// Bytes of device memory that graphs may use; the device's own when absent.
+    pub memory: Option<u64>,
     /// Folder for the pipeline cache; none when absent.
     pub cache: Option<PathBuf>,
     /// Time limit of a frame before the device counts as hung; ten times longer on software
@@ -558,6 +560,7 @@ impl Gpu {
         let physical = choose(&instance, options.device.as_deref())?;
         let mut info = describe(&instance, physical);
         super::mask::apply(&mut info, &options.without)?;
+        info.heap = info.heap.min(options.memory.unwrap_or(u64::MAX));
         let family = queue_family(&instance, physical).unwrap_or(0);
         let presents = display.is_some();
         let device = create_device(&instance, physical, family, &info.features, presents)?;
