@@ -175,6 +175,4 @@ fn graphs_that_do_not_fit_say_what_would() {
     let value: u32 = offered.parse().unwrap();
     assert!((16..256).contains(&value), "{value}");
     common::succeeds(&mut run(&[&format!("voxel_dim={value}")], "0.2"));
-    let said = common::fails(&mut run(&[], "many"));
-    assert!(said.contains("must be a number of GiB"), "{said}");
 }
