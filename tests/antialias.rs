@@ -94,7 +94,13 @@ fn coverage(camera: &PlacedCamera) -> Vec<f32> {
 fn striped_square() -> Scene {
     let mut scene = shining_square();
     let level = |edge: usize| {
-        let alpha = |i: usize| if edge == 64 && i % 2 == 0 { 255 } else { 0 };
+        let alpha = |i: usize| {
+            if edge == 64 && i.is_multiple_of(2) {
+                255
+            } else {
+                0
+            }
+        };
         (0..edge * edge)
             .flat_map(|i| [255, 255, 255, alpha(i)])
             .collect()
