@@ -760,7 +760,7 @@ fn a_sheet_of_failures() {
 #[test]
 fn shipped_suites() {
     let home = home();
-    for name in ["motion", "failures", "cost", "atrium"] {
+    for name in ["motion", "edges", "failures", "cost", "atrium"] {
         let path = root().join(format!("configs/stability/{name}.ron"));
         assert!(Suite::read(&path).unwrap().cases.len() >= 4);
         succeeds(conelab(home.path()).arg("check").arg(path));
@@ -794,7 +794,7 @@ fn shipped_suites() {
         };
         let text = at_root(at_root(text, "rays.ron"), "cones.ron");
         let (head, cases) = text.split_once("cases: {").unwrap();
-        let head = ["warmup: 32,", "warmup: 40,"]
+        let head = ["warmup: 110,", "warmup: 40,"]
             .iter()
             .fold(head.to_string(), |t, w| t.replace(w, "warmup: 2,"));
         let file = home.path().join(format!("{suite}.ron"));
@@ -816,7 +816,10 @@ fn shipped_suites() {
     all("motion", &["--methods", "tracking,temporal"]);
     let motion = all("motion", &["--only", "still,turn"]);
     let number = |r: &BTreeMap<String, String>, column: &str| r[column].parse::<f64>().unwrap();
-    for row in motion.iter().filter(|r| r["case"] == "still") {
+    // A mean goes on where each frame samples other places of a pixel.
+    let rests =
+        |r: &&BTreeMap<String, String>| r["case"] == "still" && r["method"] != "anti-aliased rays";
+    for row in motion.iter().filter(rests) {
         assert_eq!(
             number(row, "total E_t"),
             0.0,
