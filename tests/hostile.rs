@@ -614,7 +614,7 @@ fn texels_of_the_picture_that_are_no_numbers_are_counted() {
     let text = std::fs::read_to_string(&shader).unwrap();
     // A mistake in a shader, in one row of the picture.
     let wrong = "if (pixel.y == 5) total.g = uintBitsToFloat(pixel.x < 10 ? 0x7fc00000u : 0x7f800000u);\n    ";
-    let store = "imageStore(radiance, pixel, vec4(total, 1.0));";
+    let store = "imageStore(sampledRadiance, pixel, vec4(total, 1.0));";
     assert!(text.contains(store));
     std::fs::write(&shader, text.replace(store, &format!("{wrong}{store}"))).unwrap();
     let render = |more: &[&str]| {

@@ -16,15 +16,24 @@ struct RoundSums {
 const float SUM_UNIT = 262144.0; // 64 sides of the largest terms fit into 31 bits
 const float LARGEST_TERM = 8.0; // relative to the largest residual of the round before
 
-// Both packed by packSigned.
+// Half floats: the residual f, then g - g'.
 struct SideChange {
-    uvec2 residual; // f
-    uvec2 advance; // g - g'
+    uint halves[3];
 };
 
-uvec2 packSigned(vec3 v) {
-    v = clamp(v, -65504.0, 65504.0);
-    return uvec2(packHalf2x16(v.rg), packHalf2x16(vec2(v.b, 0.0)));
+const SideChange NO_CHANGE = SideChange(uint[3](0u, 0u, 0u));
+
+SideChange packChange(vec3 residual, vec3 advance) {
+    vec3 f = clamp(residual, -65504.0, 65504.0), g = clamp(advance, -65504.0, 65504.0);
+    return SideChange(uint[3](packHalf2x16(f.rg), packHalf2x16(vec2(f.b, g.r)), packHalf2x16(g.gb)));
+}
+
+vec3 residualOf(SideChange change) {
+    return vec3(unpackHalf2x16(change.halves[0]), unpackHalf2x16(change.halves[1]).x);
+}
+
+vec3 advanceOf(SideChange change) {
+    return vec3(unpackHalf2x16(change.halves[1]).y, unpackHalf2x16(change.halves[2]));
 }
 
 float sumOf(uint words[2]) {

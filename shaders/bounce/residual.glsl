@@ -26,10 +26,10 @@ void recordResidual(bool has_side, uint index, vec3 light, vec3 start, bool coun
     if (has_side) {
         bool is_first = shortRoundNumber() == 0u;
         SideChange last = sideChanges.list[index];
-        vec3 residual = light - start, growth = residual - lightOf(last.residual);
+        vec3 residual = light - start, growth = residual - residualOf(last);
         vec3 previous = is_first ? light
-            : start + stepFrom(roundResiduals.rounds[before]) * lightOf(last.advance);
-        sideChanges.list[index] = SideChange(packSigned(residual), packSigned(light - previous));
+            : start + stepFrom(roundResiduals.rounds[before]) * advanceOf(last);
+        sideChanges.list[index] = packChange(residual, light - previous);
         for (int c = 0; c < 3; c++) {
             atomicMax(shared_largest[c], floatBitsToUint(abs(residual[c])));
             float unit = uintBitsToFloat(roundResiduals.rounds[before].largest[c]);

@@ -44,11 +44,11 @@ void keepSums(uint thread) {
 // Keeps a side's change and returns how far a round that begins starts below the side's light.
 vec3 keepChange(uint from, uint to) {
     uint round = shortRoundNumber();
-    SideChange change = SideChange(uvec2(0), uvec2(0));
+    SideChange change = NO_CHANGE;
     if (from != ~0u) change = lastChanges.list[from];
     sideChanges.list[to] = change;
     if (round == 0 || frameOfShortRound() != 0) return vec3(0.0);
-    return stepFrom(lastResiduals.rounds[1 - (round & 1u)]) * lightOf(change.advance);
+    return stepFrom(lastResiduals.rounds[1 - (round & 1u)]) * advanceOf(change);
 }
 
 // Stores a side's history and returns whether the side gathers: in its phase, and in every frame until it has
@@ -58,7 +58,7 @@ bool updateHistory(uint surfel, uint side, bool has_history) {
     uint index = sideIndex(surfel, side), phases = uint(params.bounce_frames);
     if (!has_history) {
         sideGathered.list[index] = uvec2(0);
-        sideChanges.list[index] = SideChange(uvec2(0), uvec2(0));
+        sideChanges.list[index] = NO_CHANGE;
         return false;
     }
     ivec3 cell = cellOfSurfel(surfel);
