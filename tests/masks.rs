@@ -2,31 +2,15 @@
 
 mod common;
 
-use common::{assert_clean, cache, device, experiment, floats, home, lab, mean, scene};
-use conelab::lab::{Lab, LabError, Workspace};
-use conelab::vulkan::GpuOptions;
-use std::path::Path;
+use common::{assert_clean, experiment, floats, home, lab, lab_without, mean, scene};
+use conelab::lab::{Lab, LabError};
 
-/// All stages by threads: what a GPU takes by default, without the stages of its rasteriser.
+/// All stages by threads, as on a GPU by default.
 const THREADS: [(&str, &str); 3] = [
     ("shadow_map", "compute"),
     ("gbuffer", "compute"),
     ("voxelizer", "compute"),
 ];
-
-fn lab_without(home: &Path, masks: &[&str]) -> Lab {
-    let home = Workspace {
-        root: home.to_path_buf(),
-        cache: Some(cache()),
-    };
-    let options = GpuOptions {
-        device: Some(device()),
-        validation: true,
-        without: masks.iter().map(|m| (*m).to_string()).collect(),
-        ..GpuOptions::default()
-    };
-    Lab::open(home, options).unwrap()
-}
 
 /// The picture after some frames.
 fn picture(lab: &Lab, settings: &[(&str, &str)]) -> Result<Vec<[f32; 4]>, LabError> {
@@ -92,7 +76,7 @@ fn the_rasteriser_stands_in_for_atomics() {
     assert_clean(&lab);
 }
 
-/// What cannot run says which feature it lacks, and a setting that helps.
+/// A pass that cannot run names the feature that is missing, and a setting that helps.
 #[test]
 fn refusals_name_the_feature_and_a_way_out() {
     let home = home();
@@ -145,7 +129,7 @@ fn unknown_masks_list_the_known_ones() {
     );
 }
 
-/// The graph at 512^3 and the largest picture does not fit a small card, and what is offered instead does.
+/// 256^3 voxels do not fit into 0.2 GiB, and the offered number of voxels does.
 #[test]
 fn graphs_that_do_not_fit_say_what_would() {
     let home = home();

@@ -42,7 +42,7 @@ ivec2 nearestAround(ivec2 pixel) {
     return nearest;
 }
 
-// Displacement of what a pixel shows since the last frame [m].
+// Displacement of the surface in a pixel since the last frame [m]; 0 for the sky.
 vec3 motionOf(ivec2 pixel) {
     return texelFetch(gbufferDistance, pixel, 0).r > 0.0 ? motionAt(pixel) : vec3(0.0);
 }
@@ -88,7 +88,7 @@ void main() {
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
     vec4 now = texelFetch(samples, pixel, 0), last = vec4(0.0);
     vec2 place;
-    ivec2 nearest = nearestAround(pixel);
+    ivec2 nearest = cameraIsStill() && params.moves == 0 ? pixel : nearestAround(pixel);
     bool still = cameraIsStill() && motionOf(nearest) == vec3(0.0);
     // Exact: a lookup between pixels would blur.
     if (still) last = texelFetch(lastMean, pixel, 0);

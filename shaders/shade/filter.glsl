@@ -34,8 +34,8 @@ EdgeStop edgeStopOf(ivec2 pixel, GBufferSurface seen) {
     vec3 plane = mat3(camera.view) * seen.face;
     float away = dot(off, seen.face), scale = 200.0 / length(off);
     float narrow = 1.0 / reflectionWidth2(seen.surface);
-    return EdgeStop(pixel, (0.5 + pixelOffset()) * step - zoom, step, plane, away, scale, seen.surface.normal, narrow,
-        narrow * pixelAngle2());
+    return EdgeStop(pixel, (0.5 + pixelOffset()) * step - zoom, step, plane, away, scale,
+        seen.surface.normal, narrow, narrow * pixelAngle2());
 }
 
 // Normal and distance [m] of the surface at a pixel. The distance is 0 outside the image and for the sky.

@@ -15,6 +15,10 @@ struct ShadowLayer {
     uint corner; // of the square [texels]: x | y << 16
 };
 
+// Read for each plotted texel: read-only loads need no repetition after an atomic.
+#ifndef LAYER_WRITES
+readonly
+#endif
 layout(std430) buffer ShadowLayers { ShadowLayer layers[]; } shadowLayers;
 
 // Face of a point light's shadow cube that contains direction d.

@@ -5,6 +5,7 @@
 #include "params.glsl"
 #include "common/scene.glsl"
 #include "shadow/views.glsl"
+#define LAYER_WRITES
 #include "shadow/layers.glsl"
 
 layout(local_size_x = 1) in;

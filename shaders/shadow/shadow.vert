@@ -14,7 +14,7 @@ void main() {
     vec3 p = toWorld(draw.instance, loadPosition(gl_VertexIndex));
     ShadowLayer layer = shadowLayers.layers[pass.index];
     gl_Position = layer.view_projection * vec4(p, 1.0);
-    // A lamp's square is at the first corner of its page. Nothing reads what is drawn beyond it.
+    // A lamp's square is at the first corner of its page. Texels beyond it are drawn, too, but not read.
     if (layer.edge < params.shadow_dim) {
         float share = float(layer.edge) / float(params.shadow_dim);
         gl_Position.xy = (gl_Position.xy + gl_Position.w) * share - gl_Position.w;

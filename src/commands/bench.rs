@@ -73,8 +73,8 @@ const FRAMES: Frames = Frames {
     count: 40,
 };
 
-/// Warm-up on GPUs. Bounces of the graphs here gather more often until frame 77 after a change. On a
-/// software device so many frames take minutes.
+/// Warm-up on GPUs. Bounces of the graphs here gather more often until frame 77 after a change. A
+/// software device would take minutes.
 const GPU_WARMUP: usize = 128;
 
 /// Measures and prints tables; an error if a configuration failed, or became slower than recorded.

@@ -92,6 +92,11 @@ fn text(output: &Output) -> (bool, String, String) {
 
 /// A software device with the validation layer.
 pub fn lab(home: &Path) -> Lab {
+    lab_without(home, &[])
+}
+
+/// The same, used as if it lacked these features.
+pub fn lab_without(home: &Path, masks: &[&str]) -> Lab {
     let home = Workspace {
         root: home.to_path_buf(),
         cache: Some(cache()),
@@ -99,6 +104,7 @@ pub fn lab(home: &Path) -> Lab {
     let options = GpuOptions {
         device: Some(device()),
         validation: true,
+        without: masks.iter().map(|m| (*m).to_string()).collect(),
         ..GpuOptions::default()
     };
     Lab::open(home, options).unwrap()
