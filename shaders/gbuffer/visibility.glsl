@@ -4,7 +4,17 @@
 #define VISIBILITY_GLSL
 #include "common/pixel.glsl"
 
-ivec2 targetSize(uint layer) {
+const uint LAYERS = 1;
+
+uint targetLayers() {
+    return 1;
+}
+
+uvec2 targetOf(uint layer) {
+    return uvec2(0);
+}
+
+ivec2 targetSize(uvec2 target) {
     return ivec2(camera.size);
 }
 
@@ -26,11 +36,11 @@ uint wordOf(ivec2 pixel) {
 
 layout(std430) buffer Visibility { uint64_t words[]; } visibility;
 
-bool isNearer(ivec2 pixel, uint layer, float depth) {
+bool isNearer(ivec2 pixel, uvec2 target, float depth) {
     return uint(visibility.words[wordOf(pixel)] >> 32) <= floatBitsToUint(depth);
 }
 
-void plot(ivec2 pixel, uint layer, float depth, uint triangle) {
+void plot(ivec2 pixel, uvec2 target, float depth, uint triangle) {
     atomicMax(visibility.words[wordOf(pixel)], uint64_t(floatBitsToUint(depth)) << 32 | uint64_t(triangle));
 }
 

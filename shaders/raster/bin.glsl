@@ -14,7 +14,7 @@ void main() {
         uint i = queuedPiece(n);
         Piece p = rasterPieces.list[i];
         Outline o;
-        outlineOf(p, targetSize(p.layer), o); // true for all queued pieces
+        outlineOf(p, targetSize(p.target), o); // true for all queued pieces
         if ((o.high.x - o.low.x + 1) * (o.high.y - o.low.y + 1) <= MEDIUM) {
             ivec2 lane = ivec2(gl_LocalInvocationIndex & 7u, gl_LocalInvocationIndex >> 3);
             for (int y = o.low.y; y <= o.high.y; y += 4)

@@ -1,5 +1,7 @@
-// Fills the pixels of pieces. The including shader defines targetSize, targetFootprint (see
-// modules/pixel.glsl), isNearer (whether a depth is not hidden yet) and plot (a write with depth test).
+// Fills the pixels of pieces. The including shader defines
+// - targetOf: where a layer is drawn, in two words; targetSize: its pixels
+// - targetFootprint (see modules/pixel.glsl)
+// - isNearer: whether a depth is not hidden yet; plot: a write with depth test
 #ifndef RASTER_FILL_GLSL
 #define RASTER_FILL_GLSL
 #include "common/scene.glsl"
@@ -28,8 +30,8 @@ void fillInside(Piece p, Outline o, ivec2 pixel) {
     vec2 steps = vec2(pixel - o.low);
     precise float depth = clamp(p.depth + p.slope.x * steps.x + p.slope.y * steps.y, p.range.x, p.range.y);
     // Tests depth only to save a mask lookup: plot tests it anyway, without waiting.
-    if (p.mask > 0 && (!isNearer(pixel, p.layer, depth) || isCutOut(p, o, vec2(pixel) + 0.5))) return;
-    plot(pixel, p.layer, depth, p.triangle);
+    if (p.mask > 0 && (!isNearer(pixel, p.target, depth) || isCutOut(p, o, vec2(pixel) + 0.5))) return;
+    plot(pixel, p.target, depth, p.triangle);
 }
 
 void fillPixel(Piece p, Outline o, ivec2 pixel) {

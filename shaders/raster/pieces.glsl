@@ -17,8 +17,8 @@ struct Piece {
     vec2 slope; // of depth, per pixel
     vec2 range; // of depth
     uint triangle;
-    uint layer;
     uint mask; // material with an alpha mask, plus 1; 0: none
+    uvec2 target; // see targetOf
 };
 
 layout(std430) buffer RasterPieces { Piece list[]; } rasterPieces;

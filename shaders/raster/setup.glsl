@@ -1,5 +1,6 @@
-// Triangle setup, a thread per triangle and layer: near clipping, projection, and fill of small triangles.
-// The including shader also defines targetClip (clip position) and targetNear (least w).
+// Triangle setup, a thread per triangle and LAYERS layers: near clipping, projection, and fill of small
+// triangles. The including shader also defines targetLayers (their number), targetClip (clip position) and
+// targetNear (least w).
 #include "raster/fill.glsl"
 
 layout(local_size_x = 64) in;
@@ -20,12 +21,12 @@ vec3 depthPlane(Corner a, Corner b, Corner c) {
 }
 
 void draw(Corner a, Corner b, Corner c, vec3 plane, uint triangle, uint layer, uint mask) {
-    ivec2 size = targetSize(layer);
     Piece p;
+    p.target = targetOf(layer);
+    ivec2 size = targetSize(p.target);
     p.uv = vec2[3](a.uv, b.uv, c.uv);
     if (COLORS) p.alphas = packUnorm4x8(vec4(a.alpha, b.alpha, c.alpha, 0.0));
     p.triangle = triangle;
-    p.layer = layer;
     p.mask = mask;
     vec4 clip[3] = vec4[3](a.clip, b.clip, c.clip);
     float depths[3];
@@ -63,23 +64,24 @@ Corner cut(Corner before, Corner behind, float near) {
         COLORS ? mix(before.alpha, behind.alpha, t) : 1.0);
 }
 
-void setUp(uint triangle, uint layer) {
-    uvec2 t = triangles.list[triangle];
-    Draw d = draws.draws[t.x];
-    Corner corner[3];
-    for (int i = 0; i < 3; i++) {
-        uint vertex = indices.indices[t.y + i];
-        corner[i] = Corner(targetClip(toWorld(d.instance, loadPosition(vertex)), layer), vec2(0.0), 1.0);
-    }
+// Whether a triangle may be seen in a layer.
+bool isSeen(vec3 world[3], uint layer) {
+    vec4 clip[3];
+    for (int i = 0; i < 3; i++) clip[i] = targetClip(world[i], layer);
+    vec3 w = vec3(clip[0].w, clip[1].w, clip[2].w);
     for (int k = 0; k < 2; k++) {
-        vec3 x = vec3(corner[0].clip[k], corner[1].clip[k], corner[2].clip[k]);
-        vec3 w = vec3(corner[0].clip.w, corner[1].clip.w, corner[2].clip.w);
-        if (all(greaterThan(x, w)) || all(lessThan(x, -w))) return;
+        vec3 x = vec3(clip[0][k], clip[1][k], clip[2][k]);
+        if (all(greaterThan(x, w)) || all(lessThan(x, -w))) return false;
     }
+    return any(greaterThanEqual(w, vec3(targetNear(layer))));
+}
+
+void setUp(uint triangle, uvec2 t, Draw d, vec3 world[3], uint layer) {
+    Corner corner[3];
+    for (int i = 0; i < 3; i++) corner[i] = Corner(targetClip(world[i], layer), vec2(0.0), 1.0);
     float near = targetNear(layer);
     uint before = 0;
     for (int i = 0; i < 3; i++) before |= uint(corner[i].clip.w >= near) << i;
-    if (before == 0) return;
     bool masked = materials.materials[d.material].alpha_cutoff > 0.0;
     if (masked) {
         bool second = usesSecondSet(materials.materials[d.material].base_color_texture);
@@ -115,6 +117,15 @@ void setUp(uint triangle, uint layer) {
 
 void main() {
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    for (uint i = gl_GlobalInvocationID.x; i < sceneInfo.triangle_count; i += stride)
-        setUp(i, gl_GlobalInvocationID.y);
+    uint first = gl_GlobalInvocationID.y * LAYERS, many = min(targetLayers() - first, LAYERS);
+    for (uint i = gl_GlobalInvocationID.x; i < sceneInfo.triangle_count; i += stride) {
+        uvec2 t = triangles.list[i];
+        Draw d = draws.draws[t.x];
+        vec3 world[3];
+        for (int k = 0; k < 3; k++) world[k] = toWorld(d.instance, loadPosition(indices.indices[t.y + k]));
+        // A triangle is in few layers, neighbours in different ones: first find them, then set all up at once.
+        uint seen = 0;
+        for (uint k = 0; k < many; k++) seen |= uint(isSeen(world, first + k)) << k;
+        for (; seen != 0; seen &= seen - 1) setUp(i, t, d, world, first + findLSB(seen));
+    }
 }

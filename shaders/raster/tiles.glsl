@@ -27,7 +27,7 @@ void main() {
             uvec2 entry = rasterTiles.list[start + number];
             p = rasterPieces.list[entry.x];
             corner = ivec2(entry.y & 0xffffu, entry.y >> 16) * TILE;
-            if (outlineOf(p, targetSize(p.layer), o)) mine = coverage(o, corner + blockCorner(thread), BLOCK);
+            if (outlineOf(p, targetSize(p.target), o)) mine = coverage(o, corner + blockCorner(thread), BLOCK);
         }
         covered[gl_LocalInvocationID.x] = mine;
         barrier();

@@ -4,8 +4,21 @@
 
 layout(r32ui) uniform uimage2DArray shadowWords;
 
-ivec2 targetSize(uint layer) {
-    return ivec2(shadowLayers.layers[layer].edge);
+// Views of a point light, or of several lights, that a thread sets up.
+const uint LAYERS = 8;
+
+uint targetLayers() {
+    return uint(params.shadow_layers);
+}
+
+// x: corner of the layer's square in the texture; y: its page and edge.
+uvec2 targetOf(uint layer) {
+    ShadowLayer l = shadowLayers.layers[layer];
+    return uvec2(l.corner, l.page << 16 | l.edge);
+}
+
+ivec2 targetSize(uvec2 target) {
+    return ivec2(target.y & 0xffffu);
 }
 
 vec4 targetClip(vec3 p, uint layer) {
@@ -20,14 +33,14 @@ float targetFootprint() {
     return 1.0;
 }
 
-ivec3 texelOf(ivec2 pixel, uint layer) {
-    return ivec3(pixel + shadowCorner(layer), shadowLayers.layers[layer].page);
+ivec3 texelOf(ivec2 pixel, uvec2 target) {
+    return ivec3(pixel + ivec2(target.x & 0xffffu, target.x >> 16), target.y >> 16);
 }
 
-bool isNearer(ivec2 pixel, uint layer, float depth) {
-    return floatBitsToUint(depth) < imageLoad(shadowWords, texelOf(pixel, layer)).r;
+bool isNearer(ivec2 pixel, uvec2 target, float depth) {
+    return floatBitsToUint(depth) < imageLoad(shadowWords, texelOf(pixel, target)).r;
 }
 
-void plot(ivec2 pixel, uint layer, float depth, uint triangle) {
-    imageAtomicMin(shadowWords, texelOf(pixel, layer), floatBitsToUint(depth));
+void plot(ivec2 pixel, uvec2 target, float depth, uint triangle) {
+    imageAtomicMin(shadowWords, texelOf(pixel, target), floatBitsToUint(depth));
 }
