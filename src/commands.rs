@@ -39,7 +39,7 @@ mod voxels;
 
 use crate::diagnostics::excerpt::excerpt;
 use crate::files::{FileError, path_of, spec_of};
-use crate::lab::{Lab, LabError, Workspace};
+use crate::lab::{Lab, LabError, Workspace, fastest, recalled};
 use crate::metrics::Metric;
 use crate::vulkan::{GpuOptions, list_devices};
 use clap::builder::{OsStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -106,8 +106,8 @@ enum Command {
     Scene(SceneArgs),
     /// Check graphs, shaders, experiments and scenes without a window; exit 1 on any error.
     Check(check::CheckArgs),
-    /// List the Vulkan devices.
-    Devices,
+    /// List the Vulkan devices, and what `auto` stands for on each.
+    Devices(DevicesArgs),
     /// Print the completion script of a shell.
     Completions {
         /// The shell.
@@ -228,7 +228,7 @@ fn run_command(cli: Cli) -> Result<(), LabError> {
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Scene(args) => scene(&args),
-        Command::Devices => devices(),
+        Command::Devices(args) => devices(&args),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "conelab", &mut script);
@@ -351,7 +351,21 @@ fn scene(args: &SceneArgs) -> Result<(), LabError> {
     Ok(())
 }
 
-fn devices() -> Result<(), LabError> {
+/// Arguments of `conelab devices`.
+#[derive(Debug, Args)]
+struct DevicesArgs {
+    /// Measure again which options `auto` stands for: with this graph in the scene atrium at 1920x1080.
+    #[arg(long, value_name = "GRAPH", num_args = 0..=1, default_missing_value = "rays.ron")]
+    measure: Option<String>,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+fn devices(args: &DevicesArgs) -> Result<(), LabError> {
+    if let Some(graph) = &args.measure {
+        let lab = Lab::open(Workspace::find()?, args.device.options())?;
+        lab.measure(graph)?;
+    }
     for (number, (info, refused)) in list_devices()?.iter().enumerate() {
         say!(
             "{number}: {} ({}, {}), Vulkan {}",
@@ -383,6 +397,15 @@ fn devices() -> Result<(), LabError> {
                     "   {:.1} GiB of device memory",
                     info.heap as f64 / (1u64 << 30) as f64
                 );
+                for (choice, times) in recalled(info, Workspace::cache().as_deref()) {
+                    let list: Vec<String> = times
+                        .iter()
+                        .map(|(o, ms)| format!("{o} {ms:.3} ms"))
+                        .collect();
+                    if let Some(option) = fastest(&times) {
+                        say!("   {choice} auto: {option} ({})", list.join(", "));
+                    }
+                }
             }
         }
     }

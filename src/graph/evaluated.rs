@@ -2,8 +2,9 @@
 
 use super::definition::{Graph, Named};
 use super::expr::{Env, Var};
-use super::param::{Params, Value};
+use super::param::{Param, Params, Value};
 use crate::diagnostics::Diagnostic;
+use std::collections::BTreeMap;
 
 /// A graph with its parameters set, in a scene, at a size, on a device.
 #[derive(Clone, Debug)]
@@ -51,5 +52,18 @@ impl<'g> Evaluated<'g> {
             values,
             errors,
         }
+    }
+
+    /// The options that `auto` stands for, by choice.
+    pub fn chosen(&self) -> BTreeMap<String, String> {
+        let option = |(param, value): (&Param, &Value)| match value {
+            Value::Choice(option) if param.is_auto(value) => Some((
+                param.name.clone(),
+                param.resolved(option, &self.env).to_string(),
+            )),
+            _ => None,
+        };
+        let params = self.params.list.iter().zip(&self.params.values);
+        params.filter_map(option).collect()
     }
 }

@@ -4,6 +4,7 @@ mod attributes;
 mod bvh;
 mod dielectrics;
 mod emitters;
+mod fastest;
 mod interface;
 mod lighting;
 mod materials;
@@ -17,6 +18,7 @@ mod texels;
 mod view;
 mod workspace;
 
+pub use fastest::{Measured, fastest, recalled};
 pub use interface::{environment, load};
 pub use parts::{focus_of, parts_of};
 pub use scene::SceneGpu;
@@ -177,10 +179,9 @@ impl Lab {
             cache: home.cache.clone(),
             ..options
         };
-        Ok(Lab {
-            gpu: Gpu::open(&options)?,
-            home,
-        })
+        let gpu = Gpu::open(&options)?;
+        recalled(&gpu.info, home.cache.as_deref());
+        Ok(Lab { home, gpu })
     }
 
     /// Loads everything for an experiment. `wanted`: resources that will be read back.
@@ -241,6 +242,7 @@ impl Lab {
     ) -> Result<Session, LabError> {
         let graph = loaded.graph.clone();
         let params = params_of(&graph, experiment)?;
+        self.find_fastest(experiment, loaded, &params);
         let surroundings = environment(&scene, experiment.size, &self.gpu.info);
         let set = Evaluated::new(&graph, &params, surroundings.clone());
         let Loaded { linked, .. } = self

@@ -1,5 +1,6 @@
 //! Measurements of a run in the program's JSON schema (`docs/stats.md`).
 
+use crate::graph::Evaluated;
 use crate::graph::param::{OFF, Params};
 use crate::graph::report::of_common_card;
 use crate::graph::run::{Execution, FrameTimes};
@@ -73,6 +74,9 @@ pub struct Stats {
     pub triangles: usize,
     pub size: [u32; 2],
     pub params: BTreeMap<String, serde_json::Value>,
+    /// The options that `auto` stands for on this device, by parameter.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub auto: BTreeMap<String, String>,
     /// Warm-up frames.
     pub warmup: usize,
     /// Whether frames execute all passes or only changed ones.
@@ -145,6 +149,12 @@ pub fn collect(
         scene: session.scene.name.clone(),
         triangles: session.scene.triangle_count(),
         size: [width, height],
+        auto: Evaluated::new(
+            &session.graph,
+            &session.params,
+            session.surroundings.clone(),
+        )
+        .chosen(),
         params: param_values(&session.params),
         warmup,
         execution: session.execution(),
@@ -183,8 +193,16 @@ pub fn table(stats: &Stats) -> String {
     }
     rows.push(("total".into(), stats.total_gpu_ms));
     rows.push(("CPU record and submit".into(), stats.cpu_ms));
+    let auto = stats
+        .auto
+        .iter()
+        .map(|(name, option)| format!("{name} {option}"));
+    let auto = match auto.collect::<Vec<_>>() {
+        list if list.is_empty() => String::new(),
+        list => format!("auto: {}\n", list.join(", ")),
+    };
     format!(
-        "{} ({}), {}x{}\n{}memory of the graph: {:.1} MiB ({})\n",
+        "{} ({}), {}x{}\n{}{auto}memory of the graph: {:.1} MiB ({})\n",
         stats.device.name,
         stats.device.driver,
         stats.size[0],

@@ -3,6 +3,7 @@
 use super::clock::{Clock, ClockExtension};
 use super::debug::{Messages, Names, messenger_info};
 use super::{DeviceId, Result, VulkanError};
+use crate::files::content_id;
 use ash::{Entry, ext, khr, nv, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::ffi::{CStr, CString};
@@ -132,6 +133,13 @@ impl DeviceInfo {
         } else {
             ticks as f64 * self.timestamp_ns * 1e-6
         }
+    }
+
+    /// Names the device, its driver and the features that may be used, in a few letters that fit into
+    /// a file's name.
+    pub fn key(&self) -> String {
+        let features = content_id([format!("{:?}", self.features)], 8);
+        format!("{}-{features}", self.cache_key)
     }
 
     /// Whether GPU times have a place on the CPU's time line.

@@ -52,6 +52,19 @@ impl<'g> Check<'g> {
         }
     }
 
+    /// The stages that choices are measured by.
+    fn measured_stages(&mut self) {
+        let stages = || self.graph.passes.iter().map(|p| p.value.stage());
+        for param in &self.graph.params.list {
+            for stage in param.fastest.iter().flat_map(|f| &f.stages) {
+                if !stages().any(|s| s == stage) {
+                    let message = format!("choice '{}': no stage '{stage}' to measure", param.name);
+                    self.found.unknown(param.at, stage, message, stages());
+                }
+            }
+        }
+    }
+
     /// Checks everything. `results` are names of textures.
     pub(super) fn all(&mut self, names: &Names, results: &[Loc<String>]) {
         let graph = self.graph;
@@ -59,6 +72,7 @@ impl<'g> Check<'g> {
         self.pinned(&names.pinned);
         let params = graph.params.list.iter();
         self.exprs(params.flat_map(|p| p.when.iter().chain(&p.effective)));
+        self.measured_stages();
         self.modules(&names.modules);
         self.named_values();
         self.textures();

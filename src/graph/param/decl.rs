@@ -1,6 +1,6 @@
 //! Declarations of parameters in a graph file.
 
-use super::kinds::{Kind, Param, Value};
+use super::kinds::{AUTO, Fastest, Kind, Param, Value};
 use crate::diagnostics::{Entries, Loc};
 use crate::graph::expr::Ex;
 use serde::Deserialize;
@@ -82,6 +82,8 @@ struct Fields<T> {
     constant: bool,
     when: Option<Ex>,
     effective: Option<Ex>,
+    /// Of a choice with an option `auto`.
+    fastest: Option<Fastest>,
 }
 
 impl From<Kinds> for Decl {
@@ -111,6 +113,7 @@ impl From<Kinds> for Decl {
                     constant: false,
                     when: f.when,
                     effective: None,
+                    fastest: None,
                 };
                 choice.choice(files.into_iter().map(|file| file.value).collect())
             }
@@ -168,6 +171,9 @@ impl<T> Fields<T> {
         if self.constant && kind.components() > 0 {
             return Err(format!("parameter '{name}': a vector cannot be a constant"));
         }
+        if let Some(fastest) = &self.fastest {
+            check_fastest(&name, kind.options(), fastest)?;
+        }
         let option_help = option_help(&name, kind.options(), self.option_help)?;
         let param = Param {
             name,
@@ -184,6 +190,7 @@ impl<T> Fields<T> {
             constant: self.constant,
             when: self.when,
             effective: self.effective,
+            fastest: self.fastest,
             option_help,
             files: Vec::new(),
             fixed: false,
@@ -198,6 +205,26 @@ impl<T> Fields<T> {
             .map_err(|e| format!("plain value of {e}"))?;
         Ok(param)
     }
+}
+
+fn check_fastest(name: &str, options: &[String], fastest: &Fastest) -> Result<(), String> {
+    let known = |option: &str| options.iter().any(|o| o == option);
+    if !known(AUTO) {
+        return Err(format!(
+            "parameter '{name}' has fastest, but no option '{AUTO}' that stands for it"
+        ));
+    }
+    if let Some(other) = fastest.of.iter().find(|o| !known(o) || *o == AUTO) {
+        return Err(format!(
+            "choice '{name}': '{other}' cannot be the fastest, because it is none of its other options"
+        ));
+    }
+    if fastest.of.len() < 2 || fastest.stages.is_empty() {
+        return Err(format!(
+            "choice '{name}': fastest needs two options or more, and the stages to measure"
+        ));
+    }
+    Ok(())
 }
 
 /// The line of help of each option, in the order of the options; empty for one without.

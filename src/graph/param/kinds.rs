@@ -2,8 +2,13 @@
 
 use crate::diagnostics::{At, nearest, options};
 use crate::graph::expr::{Env, Ex, Var};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
+
+/// The variable that is there if an option of a choice is the fastest on the device.
+pub fn fastest_key(choice: &str, option: &str) -> String {
+    format!("fastest {choice} {option}")
+}
 
 /// What kind of value a parameter has.
 #[derive(Clone, Debug, PartialEq)]
@@ -119,6 +124,20 @@ impl fmt::Display for Value {
     }
 }
 
+/// The option of a choice that stands for the fastest of some others.
+pub const AUTO: &str = "auto";
+
+/// What [`AUTO`] of a choice stands for: the option with which some stages of a frame are fastest.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fastest {
+    /// The options that are measured. Unmeasured, a GPU takes the first, a software device the
+    /// last.
+    pub of: Vec<String>,
+    /// The stages whose times on the GPU are added.
+    pub stages: Vec<String>,
+}
+
 /// A declared parameter.
 #[derive(Clone, Debug)]
 pub struct Param {
@@ -150,6 +169,8 @@ pub struct Param {
     pub when: Option<Ex>,
     /// What shaders take in place of the default, which stands for a choice of the graph's.
     pub effective: Option<Ex>,
+    /// What the option `auto` of a choice stands for.
+    pub fastest: Option<Fastest>,
     /// Lines of help for the options of a choice; empty for other kinds.
     pub option_help: Vec<String>,
     /// The shader files of a module's options; empty for other kinds.
@@ -192,6 +213,30 @@ impl Param {
         }
     }
 
+    /// Whether the device decides it.
+    pub fn is_auto(&self, value: &Value) -> bool {
+        self.fastest.is_some() && matches!(value, Value::Choice(option) if option == AUTO)
+    }
+
+    /// The option that `auto` stands for; others stand for themselves.
+    pub fn resolved<'a>(&'a self, option: &'a str, env: &Env) -> &'a str {
+        let Some(fastest) = self.fastest.as_ref().filter(|_| option == AUTO) else {
+            return option;
+        };
+        let is_measured = |o: &&String| env.contains_key(&fastest_key(&self.name, o));
+        let is_software = env.get("software_device") == Some(&Var::Number(1.0));
+        let unmeasured = match is_software {
+            true => fastest.of.last(),
+            false => fastest.of.first(),
+        };
+        fastest
+            .of
+            .iter()
+            .find(is_measured)
+            .or(unmeasured)
+            .map_or(option, |o| o)
+    }
+
     /// Gives its variables a value. The numbers of a choice's options are among the variables
     /// already.
     pub(in crate::graph) fn put(&self, value: &Value, env: &mut Env) {
@@ -199,7 +244,7 @@ impl Param {
             Value::Bool(v) => Var::Bool(*v),
             Value::Int(v) => Var::Number(*v as f64),
             Value::Float(v) => Var::Number(*v),
-            Value::Choice(option) => match env.get(option) {
+            Value::Choice(option) => match env.get(self.resolved(option, env)) {
                 Some(number) => *number,
                 None => return,
             },

@@ -5,5 +5,5 @@ mod kinds;
 mod params;
 
 pub use decl::Decl;
-pub use kinds::{Kind, Param, Value};
+pub use kinds::{AUTO, Fastest, Kind, Param, Value, fastest_key};
 pub use params::{OFF, Params};

@@ -134,7 +134,8 @@ pub fn environment(scene: &Scene, size: (u32, u32), device: &DeviceInfo) -> Env 
         extent,
     };
     let value = |(name, of): &Variable| (name.to_string(), Var::Number(of(&facts)));
-    VARIABLES.iter().map(value).collect()
+    let fastest = super::fastest::variables(device);
+    VARIABLES.iter().map(value).chain(fastest).collect()
 }
 
 /// Reads a graph and its includes, for scenes.

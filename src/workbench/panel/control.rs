@@ -1,16 +1,18 @@
 //! The control of a parameter, by its kind.
 
-use crate::graph::param::{Kind, Param, Value};
+use crate::graph::param::{AUTO, Kind, Param, Value};
 use egui::{DragValue, Response, RichText, Ui, WidgetInfo};
 
 /// How a row looks.
-pub(crate) struct Look {
+pub(crate) struct Look<'a> {
     /// Whether the value is not the default.
     pub changed: bool,
     /// Whether it has no effect now.
     pub idle: bool,
     /// The number that a default stands for, if the graph chooses it.
     pub auto: Option<f64>,
+    /// The option that `auto` stands for.
+    pub chosen: Option<&'a str>,
 }
 
 /// Width of the button that resets a row, points.
@@ -125,7 +127,11 @@ pub(crate) fn control(
             numbers.unwrap_or_else(|| label.clone())
         }
         (Value::Choice(v), Kind::Choice(options)) => {
-            let combo = egui::ComboBox::from_id_salt(("choice", title)).selected_text(v.as_str());
+            let text = match look.chosen.filter(|_| v == AUTO) {
+                Some(chosen) => format!("{AUTO} ({chosen})"),
+                None => v.clone(),
+            };
+            let combo = egui::ComboBox::from_id_salt(("choice", title)).selected_text(text);
             let shown = combo.show_ui(ui, |ui| {
                 for (i, option) in options.iter().enumerate() {
                     let help = param.option_help.get(i).map_or("", String::as_str);

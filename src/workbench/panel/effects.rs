@@ -19,6 +19,8 @@ pub struct Found {
     pub idle: BTreeMap<String, Reason>,
     /// What shaders take in place of a value.
     pub effective: BTreeMap<String, f64>,
+    /// The options that `auto` stands for, by choice.
+    pub auto: BTreeMap<String, String>,
     /// Passes that a condition leaves out, and the choices with which it would hold.
     pub resting: BTreeMap<String, Vec<(String, String)>>,
 }
@@ -140,6 +142,7 @@ fn find((info, side): &Of, compiler: &ShaderCompiler) -> Found {
     Found {
         idle: idle(&running, compiler),
         effective,
+        auto: set.chosen(),
         resting: resting(&set),
     }
 }

@@ -263,6 +263,10 @@ impl Shown<'_> {
                 changed,
                 idle: idle.is_some(),
                 auto,
+                chosen: self
+                    .found
+                    .and_then(|f| f.auto.get(&param.name))
+                    .map(String::as_str),
             };
             let response = control(ui, param, title, &mut value, &look);
             row_menu(ui, &response).show(|ui| {
