@@ -330,6 +330,55 @@ fn unchanged_passes_are_skipped() {
     assert_clean(&lab);
 }
 
+/// Movement draws what moves into the shadow maps, and nothing else; a lamp draws all.
+#[test]
+fn movement_leaves_the_shadows_of_what_stays() {
+    let lab = lab(root());
+    let still = [
+        "still shadow clear",
+        "still shadow triangles",
+        "still shadow bins",
+        "still shadow tiles",
+    ];
+    let moving = [
+        "shadow copy",
+        "shadow triangles",
+        "shadow bins",
+        "shadow tiles",
+    ];
+    let skips = |skipped: &BTreeSet<String>, list: &[&str]| {
+        list.iter().filter(|p| skipped.contains(**p)).count()
+    };
+    for name in ["moving-box", "blade"] {
+        let mut pair = Pair::new(&lab, name, &BY_THREADS);
+        for number in 0..3 {
+            pair.frame(&format!("{name}, frame {number}"));
+        }
+        for number in 1..4 {
+            let time = 0.3 * f64::from(number);
+            pair.sides.iter_mut().for_each(|s| s.set_time(time));
+            let skipped = pair.frame(&format!("{name}, an actor at {time} s"));
+            assert_eq!(
+                (skips(&skipped, &still), skips(&skipped, &moving)),
+                (4, 0),
+                "{name}: {skipped:?}"
+            );
+        }
+        let mut lights = pair.scene.lights.clone();
+        lights[0].position.x += 0.1;
+        lights[0].direction.x += 0.1;
+        let sky = pair.scene.sky;
+        assert!(pair.sides.iter_mut().all(|s| s.set_lights(&lights, sky)));
+        let skipped = pair.frame(&format!("{name}, a lamp"));
+        assert_eq!(
+            (skips(&skipped, &still), skips(&skipped, &moving)),
+            (0, 0),
+            "{name}: {skipped:?}"
+        );
+    }
+    assert_clean(&lab);
+}
+
 /// Light that goes round settles and rests; so do the pixels, and then everything.
 #[test]
 fn what_gathers_over_frames_rests() {

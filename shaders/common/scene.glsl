@@ -36,6 +36,7 @@ layout(std140) uniform SceneInfo {
     uint vertex_count;
     uint instance_count;
     float sky_turn; // rotation of the sky image about y [turns], 0 to 1; negative: no image
+    uint still_triangles; // they come first and never move
 } sceneInfo;
 
 struct Instance {

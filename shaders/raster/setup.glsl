@@ -1,6 +1,6 @@
 // Triangle setup, a thread per triangle and LAYERS layers: near clipping, projection, and fill of small
-// triangles. The including shader also defines targetLayers (their number), targetClip (clip position) and
-// targetNear (least w).
+// triangles. The including shader also defines targetTriangles (the first, and the end), targetLayers (their
+// number), targetClip (clip position) and targetNear (least w).
 #include "raster/fill.glsl"
 
 layout(local_size_x = 64) in;
@@ -117,8 +117,9 @@ void setUp(uint triangle, uvec2 t, Draw d, vec3 world[3], uint layer) {
 
 void main() {
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uvec2 range = targetTriangles();
     uint first = gl_GlobalInvocationID.y * LAYERS, many = min(targetLayers() - first, LAYERS);
-    for (uint i = gl_GlobalInvocationID.x; i < sceneInfo.triangle_count; i += stride) {
+    for (uint i = range.x + gl_GlobalInvocationID.x; i < range.y; i += stride) {
         uvec2 t = triangles.list[i];
         Draw d = draws.draws[t.x];
         vec3 world[3];

@@ -42,6 +42,8 @@ pub struct External {
     pub block: Option<Block>,
     /// Whether a scene has it only for graphs that bind it.
     pub on_request: bool,
+    /// Whether it changes only where geometry moves.
+    pub moves: bool,
     /// Bytes that count frames. They differ in every frame, and alone keep no pass from resting.
     pub counters: Range<usize>,
 }
@@ -92,6 +94,7 @@ impl External {
             kind,
             block: None,
             on_request: false,
+            moves: false,
             counters: 0..0,
         }
     }

@@ -362,6 +362,7 @@ fn info_of(
         vertex_count: count(shape.positions.len() / 3),
         instance_count: count(scene.instances.len()),
         sky_turn: 0.0,
+        still_triangles: shape.still_triangles(),
     }
 }
 

@@ -19,6 +19,8 @@ pub(super) struct Shape {
     pub draws: Vec<DrawBlock>,
     /// Number of opaque draws.
     pub opaque: usize,
+    /// Whether each draw moves or deforms.
+    pub moves: Vec<bool>,
 }
 
 impl Shape {
@@ -31,6 +33,7 @@ impl Shape {
             first_index: Vec::new(),
             draws: Vec::new(),
             opaque: 0,
+            moves: Vec::new(),
         };
         for (mesh, vertices) in scene.meshes.iter().zip(posed) {
             let base = count(shape.positions.len() / 3);
@@ -42,6 +45,9 @@ impl Shape {
             shape.indices.extend(mesh.indices.iter().map(|i| base + i));
         }
         shape.draws = draws(scene, &shape.first_index);
+        let moves = scene.is_animated();
+        let of = |d: &DrawBlock| scene.instances.get(d.instance as usize).is_some_and(&moves);
+        shape.moves = shape.draws.iter().map(of).collect();
         shape.opaque = shape.draws.iter().filter(|d| !is_masked(scene, d)).count();
         shape
     }
@@ -54,6 +60,16 @@ impl Shape {
     /// Number of triangles.
     pub fn triangle_count(&self) -> u32 {
         count(self.draws.iter().map(|d| d.index_count as usize / 3).sum())
+    }
+
+    /// Number of triangles that never move; [`Shape::triangles`] begins with them.
+    pub fn still_triangles(&self) -> u32 {
+        let still = self
+            .draws
+            .iter()
+            .zip(&self.moves)
+            .filter(|(_, moves)| !**moves);
+        count(still.map(|(d, _)| d.index_count as usize / 3).sum())
     }
 
     /// Indirect commands (VkDrawIndexedIndirectCommand), one for each draw. The instance number
@@ -82,14 +98,17 @@ impl Shape {
         })
     }
 
-    /// (draw, first of its indices) of every triangle, draw by draw. Neighbours in space are
+    /// (draw, first of its indices) of every triangle, draw by draw: first those that never move.
+    /// Neighbours in space are
     /// neighbours in the list. The order depends on the content of triangles alone, because it
     /// decides which of two coincident ones is visible.
     pub fn triangles(&self) -> Vec<[u32; 2]> {
         // Instances of one mesh have the same triangles.
         let mut sorted: HashMap<(u32, u32), Vec<u32>> = HashMap::new();
         let mut list = Vec::new();
-        for (number, draw) in (0u32..).zip(&self.draws) {
+        let mut draws: Vec<(u32, &DrawBlock)> = (0..).zip(&self.draws).collect();
+        draws.sort_by_key(|(number, _)| self.moves[*number as usize]);
+        for (number, draw) in draws {
             let key = (draw.first_index, draw.index_count);
             let order = sorted.entry(key).or_insert_with(|| self.sorted(draw));
             list.extend(order.iter().map(|first| [number, *first]));

@@ -101,6 +101,11 @@ pub struct PassDecl {
     /// Frames from a fresh start until the accumulated result has converged; the value of `settles`
     /// when absent. A group counts once.
     pub converges: Option<Ex>,
+    /// Whether it reads only geometry that stays as it is, of the resources in which other geometry
+    /// moves ([`External::moves`](crate::graph::interface::External::moves)). Movement does not run it
+    /// again.
+    #[serde(default)]
+    pub still: bool,
     /// Shader files.
     #[serde(default)]
     pub shaders: Items<String>,

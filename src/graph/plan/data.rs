@@ -126,6 +126,8 @@ pub struct Step {
     pub pass: usize,
     /// Repeat index or mip.
     pub index: u32,
+    /// Whether it reads only geometry that stays as it is.
+    pub still: bool,
     /// The command.
     pub work: Work,
     /// Which case of each of the pass's bindings holds.

@@ -67,6 +67,7 @@ impl<'a> Planner<'a, '_> {
         let mut step = Step {
             pass: number,
             index,
+            still: pass.still,
             work: Work::Fullscreen,
             cases: Vec::new(),
             bindings: Vec::new(),

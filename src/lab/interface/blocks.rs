@@ -94,6 +94,7 @@ block! {
         vertex_count: u32,
         instance_count: u32,
         sky_turn: f32,
+        still_triangles: u32,
     }
 }
 

@@ -43,6 +43,10 @@ static SCENE: LazyLock<SceneInterface> = LazyLock::new(|| {
         on_request: true,
         ..storage(name)
     };
+    let moving = |external| External {
+        moves: true,
+        ..external
+    };
     let textures = |name| External::new(name, ExternalKind::TextureArray);
     let mut resources = vec![
         External {
@@ -54,10 +58,10 @@ static SCENE: LazyLock<SceneInterface> = LazyLock::new(|| {
         External::list("shadowViews", ShadowBlock::layout()),
         External::list("materials", MaterialBlock::layout()),
         storage("dielectrics"),
-        External::list("instances", InstanceBlock::layout()),
+        moving(External::list("instances", InstanceBlock::layout())),
         External::list("draws", DrawBlock::layout()),
-        storage("positions"),
-        storage("attributes"),
+        moving(storage("positions")),
+        moving(storage("attributes")),
         storage("indices"),
         storage("triangles"),
         External::list("emitters", EmitterBlock::layout()),
@@ -97,6 +101,9 @@ const VARIABLES: &[Variable] = &[
     ("moving_instances", |f| {
         let moving = f.scene.instances.iter().filter(|i| i.mover.is_some());
         moving.count() as f64
+    }),
+    ("moving_triangles", |f| {
+        f.scene.moving_triangle_count() as f64
     }),
     ("emitting_triangle_count", |f| {
         f.scene.emitting_triangle_count() as f64

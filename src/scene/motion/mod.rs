@@ -138,10 +138,23 @@ impl Scene {
 
     /// Instances that move or deform.
     pub fn animated(&self) -> impl Iterator<Item = &Instance> {
+        let is_animated = self.is_animated();
+        self.instances.iter().filter(move |i| is_animated(i))
+    }
+
+    /// Tells whether an instance moves or deforms.
+    pub(crate) fn is_animated(&self) -> impl Fn(&Instance) -> bool + use<> {
         let deforming: HashSet<u32> = self.deformers.iter().map(|d| d.mesh).collect();
-        self.instances
-            .iter()
-            .filter(move |i| i.mover.is_some() || deforming.contains(&i.mesh))
+        move |i| i.mover.is_some() || deforming.contains(&i.mesh)
+    }
+
+    /// Triangles of instances that move or deform.
+    pub fn moving_triangle_count(&self) -> usize {
+        let meshes = self
+            .animated()
+            .filter_map(|i| self.meshes.get(i.mesh as usize));
+        let submeshes = meshes.flat_map(|m| &m.submeshes);
+        submeshes.map(|s| s.index_count as usize / 3).sum()
     }
 
     /// Adds a mover and returns its index.

@@ -40,7 +40,7 @@ impl Externals {
         let by_step: Vec<BTreeSet<Read>> = plan
             .steps
             .iter()
-            .map(|step| reads_of(step, &linked[step.pass]))
+            .map(|step| reads_of(step, &linked[step.pass], interface))
             .collect();
         let all: BTreeSet<Read> = by_step.iter().flatten().cloned().collect();
         let reads: Vec<Read> = all.into_iter().collect();
@@ -125,10 +125,12 @@ impl Externals {
     }
 }
 
-fn reads_of(step: &Step, link: &Linked) -> BTreeSet<Read> {
+fn reads_of(step: &Step, link: &Linked, interface: &SceneInterface) -> BTreeSet<Read> {
     let mut reads = BTreeSet::new();
     for (bound, case) in link.bound.iter().zip(&step.cases) {
-        if let Target::External(resource) = bound.cases[*case].target {
+        if let Target::External(resource) = bound.cases[*case].target
+            && !(step.still && interface.resources[resource].moves)
+        {
             let bytes = bound
                 .reads
                 .clone()
