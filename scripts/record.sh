@@ -57,6 +57,14 @@ record() {
             --set voxel_capacity=1750000 --set fragment_capacity=2850000 --rounds 3 ;;
         rooms) bench configs/rays.ron --sizes 1920x1080 \
             --axis "scene=\"cornell\",\"atrium\",\"$sponza\",\"configs/scenes/living-room.ron\",\"street\",\"emitters\",\"foliage\"" --rounds 3 ;;
+        lights) bench configs/rays.ron --sizes 1920x1080 \
+            --axis 'scene="atrium","configs/scenes/lamps-3.ron","configs/scenes/lamps-32.ron"' --rounds 3 ;;
+        actors)
+            local way=(render configs/rays.ron --scene atrium --size 1920x1080 --execution incremental
+                --step 0.0166667 --warmup 200 --frames 300)
+            run "${way[@]}" --json "$work/actors.json" -o "$work/actors.png"
+            keep_json actors "$work/actors.json" "${way[@]}"
+            ;;
         moving)
             local way=(render configs/rays.ron --scene "$sponza" --size 1920x1080 --set voxel_dim=256 --execution incremental
                 --path configs/paths/sponza.ron --step 0.0166667 --warmup 600 --frames 300)
@@ -80,5 +88,5 @@ record() {
     esac
 }
 
-[[ $# -gt 0 ]] || set -- thesis rays pixels cells rooms moving scenes exposures lamps sponza voxels
+[[ $# -gt 0 ]] || set -- thesis rays pixels cells rooms lights moving actors scenes exposures lamps sponza voxels
 for name; do record "$name"; done

@@ -191,9 +191,9 @@ fn json(name: &str) -> (String, serde_json::Value) {
     (format!("*{device}, {commit}: `{command}`*"), record)
 }
 
-/// A camera in motion: what the passes that run take, by stage.
-fn moving() -> String {
-    let (said, record) = json("moving");
+/// Incremental execution while something moves: what the passes that run take, by stage.
+fn moving(name: &str) -> String {
+    let (said, record) = json(name);
     let (mut stages, mut skipped): (Vec<(String, f64)>, usize) = (Vec::new(), 0);
     for pass in record["passes"].as_array().unwrap() {
         let (stage, ms) = (
@@ -483,7 +483,7 @@ fn presets() -> String {
 
 fn block(name: &str) -> String {
     match name {
-        "moving" => moving(),
+        "moving" | "actors" => moving(name),
         "scenes" => scenes(),
         "lamps" => lamps(),
         "exposures" => exposures(),

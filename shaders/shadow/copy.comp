@@ -1,14 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Begins the maps with what never moves.
-#include "params.glsl"
-
-layout(local_size_x = 32, local_size_y = 4) in;
+#include "shadow/texels.glsl"
 
 layout(r32ui) uniform readonly uimage2DArray stillWords;
 layout(r32ui) uniform writeonly uimage2DArray shadowWords;
 
 void main() {
-    ivec3 texel = ivec3(gl_GlobalInvocationID);
-    imageStore(shadowWords, texel, imageLoad(stillWords, texel));
+    uvec4 words[TEXELS];
+    for (int i = 0; i < TEXELS; i++) words[i] = imageLoad(stillWords, texelOfThread(i));
+    for (int i = 0; i < TEXELS; i++) imageStore(shadowWords, texelOfThread(i), words[i]);
 }

@@ -106,6 +106,10 @@ pub struct PassDecl {
     /// again.
     #[serde(default)]
     pub still: bool,
+    /// Whether its compute shader writes every texel of the images that it only stores to, where that
+    /// does not follow from one thread for each texel.
+    #[serde(default)]
+    pub replaces: bool,
     /// Shader files.
     #[serde(default)]
     pub shaders: Items<String>,

@@ -88,12 +88,13 @@ impl<'a> Planner<'a, '_> {
         self.attachments(pass, &mut step);
         step.work = self.work(pass, link, &mut step)?;
         step.uses = merge(std::mem::take(&mut step.uses));
-        self.covers(link, &mut step);
+        self.covers(pass, link, &mut step);
         Some(step)
     }
 
-    /// One thread for each texel, each of which stores at its own place, replaces all content.
-    fn covers(&self, link: &Linked, step: &mut Step) {
+    /// One thread for each texel, each of which stores at its own place, replaces all content; so
+    /// does a pass that says so.
+    fn covers(&self, pass: &PassDecl, link: &Linked, step: &mut Step) {
         let (Work::Dispatch(groups), [shader]) = (&step.work, &link.stages[..]) else {
             return;
         };
@@ -107,12 +108,8 @@ impl<'a> Planner<'a, '_> {
                 .interface
                 .covers
                 .contains(&link.bound[binding.bound].binding);
-            if covered
-                && threads
-                    .iter()
-                    .zip(texels)
-                    .all(|(threads, texels)| *threads >= texels)
-            {
+            let mut axes = threads.iter().zip(texels);
+            if pass.replaces || covered && axes.all(|(threads, texels)| *threads >= texels) {
                 let res = Res::Texture(binding.texture, binding.history);
                 let stores = |u: &&mut Use| {
                     u.res == res && u.mips == binding.mips && u.kind == UseKind::Storage
