@@ -531,6 +531,8 @@ fn figures_of_the_readme_are_those_recorded() {
         };
         number(bench.lines.iter().find(is).unwrap(), "median ms")
     };
+    let words = bench.said.strip_prefix("NVIDIA ").unwrap();
+    let (chip, _) = words.split_once([',', ' ']).unwrap();
     let moving = json("moving").1["total_gpu_ms"]["median"].as_f64().unwrap();
     let modes = json("voxels").1["modes"].as_array().unwrap().clone();
     let tessellated = modes.iter().find(|m| m["title"] == "tessellated").unwrap();
@@ -539,7 +541,7 @@ fn figures_of_the_readme_are_those_recorded() {
     for figure in [
         format!("is off by {low:+.0} to {high:+.0} %"),
         format!(
-            "takes {:.1} ms (1920x1080, 160^3, H100), {:.1} ms of it final shading",
+            "takes {:.1} ms (1920x1080, 160^3, {chip}), {:.1} ms of it final shading",
             of("total"),
             of("final shading")
         ),
