@@ -1,11 +1,12 @@
 //! Which option of a choice is fastest on a device. It is measured once, where a choice is `auto`,
 //! and kept in the cache folder for the device, its driver and its features.
 
-use super::{Lab, LabError, Loaded};
+use super::{Lab, LabError, Loaded, Session};
 use crate::experiment::Experiment;
 use crate::files::{read_input, write_whole};
 use crate::graph::expr::Var;
 use crate::graph::param::{Param, Params, Value, fastest_key};
+use crate::graph::run::FrameTimes;
 use crate::metrics::percentile;
 use crate::scene::Scene;
 use crate::vulkan::DeviceInfo;
@@ -13,6 +14,7 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Milliseconds on the GPU by option, by choice. A choice that could not be measured has none.
 pub type Measured = BTreeMap<String, BTreeMap<String, f64>>;
@@ -20,10 +22,11 @@ pub type Measured = BTreeMap<String, BTreeMap<String, f64>>;
 /// What is known of each device, by [`DeviceInfo::key`].
 static KNOWN: Mutex<BTreeMap<String, Measured>> = Mutex::new(BTreeMap::new());
 
-/// Frames before those that count, and the frames that count. They take less than a second on a GPU
-/// that draws one in 15 ms.
+/// Frames before those that count, and the frames that count; fewer, but one or more, on devices
+/// that do not draw them in this time.
 const WARMUP: usize = 8;
 const FRAMES: usize = 16;
+const PATIENCE: Duration = Duration::from_millis(250);
 
 /// The scene and the size that are measured.
 const SCENE: &str = "atrium";
@@ -146,12 +149,8 @@ impl Lab {
                     continue;
                 }
             };
-            session.run(WARMUP)?;
-            let mut frames = Vec::new();
-            for _ in 0..FRAMES {
-                frames.extend(session.frame(0.0)?);
-            }
-            frames.extend(session.finish()?);
+            drop(timed(&mut session, WARMUP)?);
+            let frames = timed(&mut session, FRAMES)?;
             for (choice, option) in set {
                 let stages = choice.fastest.iter().flat_map(|f| &f.stages);
                 let stages: Vec<&str> = stages.map(String::as_str).collect();
@@ -186,6 +185,19 @@ fn opened() -> Result<Scene, LabError> {
 fn subject(graph: &str) -> Result<Experiment, LabError> {
     let text = format!("(graph: {graph:?}, scene: {SCENE:?}, size: {SIZE})");
     Experiment::from_text("the measurement".as_ref(), &text).map_err(LabError::Input)
+}
+
+/// The times of up to so many frames.
+fn timed(session: &mut Session, most: usize) -> Result<Vec<FrameTimes>, LabError> {
+    let (begun, mut frames) = (Instant::now(), Vec::new());
+    for _ in 0..most {
+        frames.extend(session.frame(0.0)?);
+        if begun.elapsed() > PATIENCE {
+            break;
+        }
+    }
+    frames.extend(session.finish()?);
+    Ok(frames)
 }
 
 fn choices(list: &[Param]) -> Vec<&Param> {
