@@ -88,8 +88,8 @@ fn an_unmeasured_software_device_takes_the_last_option() {
     assert_eq!(chosen(home, &cache), "first");
     // What is no measurement counts as none.
     let is_file = |path: &std::path::PathBuf| path.to_string_lossy().contains("fastest-");
-    let files = read_dir(&cache).unwrap().flatten().map(|f| f.path());
-    let file = files.filter(is_file).next().unwrap();
+    let mut files = read_dir(&cache).unwrap().flatten().map(|f| f.path());
+    let file = files.find(is_file).unwrap();
     for text in ["", "{", "{\"work\": {\"first\": -1.0}}", "[1]"] {
         write(&file, text).unwrap();
         assert_eq!(chosen(home, &cache), "second", "{text}");
