@@ -255,3 +255,36 @@ fn lights_see_the_same_depths() {
         }
     }
 }
+
+/// Texels that no group of threads fills exactly are cleared and copied too.
+#[test]
+fn maps_of_any_size_are_whole() {
+    let lab = lab(root());
+    for (name, share) in [("foliage", 0.02), ("atrium", 0.005)] {
+        let mut lit = Scene::clone(&scene(name));
+        let sun = Light {
+            kind: LightKind::Directional,
+            shadow: true,
+            ..lit.lights[0].clone()
+        };
+        lit.lights = vec![sun];
+        let lit = Arc::new(lit);
+        for edge in ["260", "332"] {
+            let map = |how: &str, texture: &str| {
+                let settings = [("shadow_map", how), ("shadow_dim", edge)];
+                let mut live = session(&lab, &lit, &settings, &[texture]);
+                run(&lab, &mut live, None);
+                let bytes = live.texels(texture, 0, 0).unwrap().bytes;
+                bytemuck::pod_collect_to_vec::<u8, f32>(&bytes)
+            };
+            let (drawn, threads) = (map("raster", "shadowMap"), map("compute", "shadowWords"));
+            let depths = drawn.iter().zip(&threads);
+            let differ = depths.filter(|(a, b)| (**a - **b).abs() > 1e-4).count();
+            assert!(
+                differ as f64 <= share * drawn.len() as f64,
+                "{name}, {edge}: {differ} of {} texels",
+                drawn.len()
+            );
+        }
+    }
+}

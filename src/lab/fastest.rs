@@ -88,11 +88,16 @@ impl Lab {
         if !is_needed || info.kind == "cpu" || info.timestamp_ns == 0.0 {
             return;
         }
-        // A graph that cannot be measured keeps the option for unmeasured devices in this run.
-        let found = self.measure_fastest(&experiment.graph, loaded);
-        let none = |choice: &Param| (choice.name.clone(), BTreeMap::new());
-        let choices = choices(&params.list);
-        self.keep(found.unwrap_or_else(|_| choices.into_iter().map(none).collect()));
+        match self.measure_fastest(&experiment.graph, loaded) {
+            Ok(found) => self.keep(found),
+            // Options for unmeasured devices, in this run.
+            Err(_) => {
+                let none = |choice: &Param| (choice.name.clone(), BTreeMap::new());
+                let mut all = known;
+                all.extend(choices(&params.list).into_iter().map(none));
+                know(info, all);
+            }
+        }
     }
 
     /// Measures the choices of a graph, whether they are known or not, and keeps the times.
@@ -116,8 +121,7 @@ impl Lab {
         if let (Some(cache), Ok(bytes)) = (cache, serde_json::to_vec_pretty(&all)) {
             drop(write_whole(&file(cache, info), &bytes));
         }
-        let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-        known.insert(info.key(), all);
+        know(info, all);
     }
 
     /// Runs all choices with their first options, then all with their second ones, and so on:
@@ -176,6 +180,12 @@ impl Lab {
             _ => Ok(found),
         }
     }
+}
+
+/// Remembers this for the rest of the run.
+fn know(device: &DeviceInfo, all: Measured) {
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    known.insert(device.key(), all);
 }
 
 fn opened() -> Result<Scene, LabError> {
