@@ -23,7 +23,8 @@
 //! runs clear too, because light needs A.
 //! ```
 //!
-//! Authors of graphs declare nothing for this. A step that reads the frame count, or its own output
+//! Authors of graphs need to declare nothing for this. `still` and `replaces` of a pass say what its
+//! shaders do not show. A step that reads the frame count, or its own output
 //! of the last frame, gets a new version in every frame, so it runs in every frame. A graph may
 //! declare that a *group* of such steps converges (`settles`): the group stops after that number
 //! of frames in which its inputs did not change ([`converge`]).
