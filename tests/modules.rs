@@ -181,6 +181,19 @@ fn files(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
+/// Groups of 8 to 64 threads that a device runs together change no result, because no shader can see them.
+#[test]
+fn no_shader_sees_the_size_of_subgroups() {
+    let shaders = files(&root().join("shaders"));
+    assert!(shaders.len() > 150, "{} files", shaders.len());
+    for path in shaders {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let seen = ["subgroup", "gl_Subgroup", "_ballot", "shader_group_vote"];
+        let found = seen.iter().find(|word| text.contains(**word));
+        assert!(found.is_none(), "{}: {found:?}", path.display());
+    }
+}
+
 #[test]
 fn the_page_names_files_and_settings_that_are_there() {
     let page = page();
