@@ -82,6 +82,7 @@ void setUp(uint triangle, uvec2 t, Draw d, vec3 world[3], uint layer) {
     float near = targetNear(layer);
     uint before = 0;
     for (int i = 0; i < 3; i++) before |= uint(corner[i].clip.w >= near) << i;
+    if (before == 0) return; // isSeen may round otherwise
     bool masked = materials.materials[d.material].alpha_cutoff > 0.0;
     if (masked) {
         bool second = usesSecondSet(materials.materials[d.material].base_color_texture);

@@ -15,7 +15,7 @@ struct ShadowLayer {
     uint corner; // of the square [texels]: x | y << 16
 };
 
-// Read for each plotted texel: read-only loads need no repetition after an atomic.
+// Read-only, except in the pass that places them.
 #ifndef LAYER_WRITES
 readonly
 #endif

@@ -4,7 +4,7 @@
 
 layout(r32ui) uniform uimage2DArray shadowWords;
 
-// Views of a point light, or of several lights, that a thread sets up.
+// Views that a thread sets up, of one or several lights; as passes/parts/shadow_compute.ron dispatches.
 const uint LAYERS = 8;
 
 uint targetLayers() {

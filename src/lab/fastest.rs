@@ -4,6 +4,7 @@
 use super::{Lab, LabError, Loaded, Session};
 use crate::experiment::Experiment;
 use crate::files::{read_input, write_whole};
+use crate::graph::Graph;
 use crate::graph::expr::Var;
 use crate::graph::param::{Param, Params, Value, fastest_key};
 use crate::graph::run::FrameTimes;
@@ -19,7 +20,7 @@ use std::time::{Duration, Instant};
 /// Milliseconds on the GPU by option, by choice. A choice that could not be measured has none.
 pub type Measured = BTreeMap<String, BTreeMap<String, f64>>;
 
-/// What is known of each device, by [`DeviceInfo::key`].
+/// Measurements of each device, by [`DeviceInfo::key`].
 static KNOWN: Mutex<BTreeMap<String, Measured>> = Mutex::new(BTreeMap::new());
 
 /// Frames before those that count, and the frames that count; fewer, but one or more, on devices
@@ -32,13 +33,13 @@ const PATIENCE: Duration = Duration::from_millis(250);
 const SCENE: &str = "atrium";
 const SIZE: &str = "(1920, 1080)";
 
-/// What is known of a device in this run of the program.
-pub fn measured(device: &DeviceInfo) -> Measured {
+/// Measurements of a device that this run of the program knows.
+fn measured(device: &DeviceInfo) -> Measured {
     let known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     known.get(&device.key()).cloned().unwrap_or_default()
 }
 
-/// The same, with what earlier runs left in the cache folder.
+/// The same, with those that earlier runs left in the cache folder.
 pub fn recalled(device: &DeviceInfo, cache: Option<&Path>) -> Measured {
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     let read = || {
@@ -88,7 +89,9 @@ impl Lab {
         if !is_needed || info.kind == "cpu" || info.timestamp_ns == 0.0 {
             return;
         }
-        match self.measure_fastest(&experiment.graph, loaded) {
+        let found =
+            opened().and_then(|scene| self.measure_fastest(&experiment.graph, loaded, &scene));
+        match found {
             Ok(found) => self.keep(found),
             // Options for unmeasured devices, in this run.
             Err(_) => {
@@ -105,14 +108,15 @@ impl Lab {
     /// # Errors
     /// The graph cannot be run in the scene of the measurement with any option.
     pub fn measure(&self, graph: &str) -> Result<Measured, LabError> {
-        let (experiment, scene) = (subject(graph)?, Arc::new(opened()?));
+        let (experiment, scene) = (subject(graph)?, opened()?);
         let loaded = self.home.load_for(&experiment, &scene, &self.gpu.info);
-        let found = self.measure_fastest(graph, &loaded.map_err(LabError::Input)?)?;
+        let loaded = loaded.map_err(LabError::Input)?;
+        let found = self.measure_fastest(graph, &loaded, &scene)?;
         self.keep(found.clone());
         Ok(found)
     }
 
-    /// Adds what was measured to what is known. A cache folder that cannot be written costs a
+    /// Adds measurements to the known ones. A cache folder that cannot be written costs a
     /// measurement in each run of the program, and nothing else.
     fn keep(&self, new: Measured) {
         let (info, cache) = (&self.gpu.info, self.home.cache.as_deref());
@@ -126,12 +130,16 @@ impl Lab {
 
     /// Runs all choices with their first options, then all with their second ones, and so on:
     /// stages do not depend on one another's rasteriser.
-    fn measure_fastest(&self, graph: &str, loaded: &Loaded) -> Result<Measured, LabError> {
+    fn measure_fastest(
+        &self,
+        graph: &str,
+        loaded: &Loaded,
+        scene: &Arc<Scene>,
+    ) -> Result<Measured, LabError> {
         let choices = choices(&loaded.graph.params.list);
         let ranks = choices
             .iter()
             .filter_map(|c| Some(c.fastest.as_ref()?.of.len()));
-        let scene = Arc::new(opened()?);
         let (mut found, mut failed, mut reuse) = (Measured::new(), None, None);
         for rank in 0..ranks.max().unwrap_or(0) {
             let mut experiment = subject(graph)?;
@@ -147,7 +155,7 @@ impl Lab {
             let session = self.build(&experiment, loaded, scene.clone(), wanted, reuse.as_ref());
             let mut session = match session {
                 Ok(session) => session,
-                // The device lacks what an option needs.
+                // The device lacks a feature of an option.
                 Err(error) => {
                     failed = Some(error);
                     continue;
@@ -156,22 +164,8 @@ impl Lab {
             drop(timed(&mut session, WARMUP)?);
             let frames = timed(&mut session, FRAMES)?;
             for (choice, option) in set {
-                let stages = choice.fastest.iter().flat_map(|f| &f.stages);
-                let stages: Vec<&str> = stages.map(String::as_str).collect();
-                let counts = |pass: usize| {
-                    let pass = loaded.graph.passes.get(pass);
-                    pass.is_some_and(|p| stages.contains(&p.value.stage()))
-                };
-                let sum = |passes: &[(usize, f64)]| {
-                    passes
-                        .iter()
-                        .filter(|p| counts(p.0))
-                        .map(|p| p.1)
-                        .sum::<f64>()
-                };
-                let mut sums: Vec<f64> = frames.iter().map(|f| sum(&f.passes)).collect();
                 let times = found.entry(choice.name.clone()).or_default();
-                times.insert(option, percentile(&mut sums, 0.5));
+                times.insert(option, time_of(choice, &loaded.graph, &frames));
             }
             reuse = Some(session.reusable_parts());
         }
@@ -188,8 +182,24 @@ fn know(device: &DeviceInfo, all: Measured) {
     known.insert(device.key(), all);
 }
 
-fn opened() -> Result<Scene, LabError> {
-    Ok(Scene::open(SCENE, &|_, _| ControlFlow::Continue(()))?)
+/// Median over frames of the time of a choice's stages, ms.
+fn time_of(choice: &Param, graph: &Graph, frames: &[FrameTimes]) -> f64 {
+    let counts = |pass: usize| {
+        let stage = graph.passes.get(pass).map(|p| p.value.stage());
+        let mut stages = choice.fastest.iter().flat_map(|f| &f.stages);
+        stages.any(|s| stage == Some(s))
+    };
+    let sum = |frame: &FrameTimes| {
+        let passes = frame.passes.iter().filter(|p| counts(p.0));
+        passes.map(|p| p.1).sum::<f64>()
+    };
+    percentile(&mut frames.iter().map(sum).collect::<Vec<f64>>(), 0.5)
+}
+
+fn opened() -> Result<Arc<Scene>, LabError> {
+    Ok(Arc::new(Scene::open(SCENE, &|_, _| {
+        ControlFlow::Continue(())
+    })?))
 }
 
 fn subject(graph: &str) -> Result<Experiment, LabError> {
@@ -197,7 +207,7 @@ fn subject(graph: &str) -> Result<Experiment, LabError> {
     Experiment::from_text("the measurement".as_ref(), &text).map_err(LabError::Input)
 }
 
-/// The times of up to so many frames.
+/// The times of frames: of `most`, or fewer on a slow device.
 fn timed(session: &mut Session, most: usize) -> Result<Vec<FrameTimes>, LabError> {
     let (begun, mut frames) = (Instant::now(), Vec::new());
     for _ in 0..most {

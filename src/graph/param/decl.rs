@@ -82,7 +82,7 @@ struct Fields<T> {
     constant: bool,
     when: Option<Ex>,
     effective: Option<Ex>,
-    /// Of a choice with an option `auto`.
+    /// For choices with the option `auto`.
     fastest: Option<Fastest>,
 }
 

@@ -134,7 +134,7 @@ pub struct Fastest {
     /// The options that are measured. Unmeasured, a GPU takes the first, a software device the
     /// last.
     pub of: Vec<String>,
-    /// The stages whose times on the GPU are added.
+    /// The stages: their times on the GPU are added.
     pub stages: Vec<String>,
 }
 
@@ -169,7 +169,7 @@ pub struct Param {
     pub when: Option<Ex>,
     /// What shaders take in place of the default, which stands for a choice of the graph's.
     pub effective: Option<Ex>,
-    /// What the option `auto` of a choice stands for.
+    /// The meaning of a choice's option `auto`.
     pub fastest: Option<Fastest>,
     /// Lines of help for the options of a choice; empty for other kinds.
     pub option_help: Vec<String>,
