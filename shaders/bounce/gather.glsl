@@ -2,6 +2,7 @@
 #ifndef BOUNCE_GATHER_GLSL
 #define BOUNCE_GATHER_GLSL
 #include "surfels/sides.glsl"
+#include "surfels/place.glsl"
 #include "common/ggx.glsl"
 #include "common/pattern.glsl"
 #include "common/random.glsl"
@@ -90,12 +91,6 @@ vec3 gatherAt(vec3 p, vec3 n, bool lamp, SideShifts shifts, int first, int of) {
         else sum += (1.0 - hit.a) * light;
     }
     return sum;
-}
-
-// World position of the centroid of a side's surfaces.
-vec3 surfelPosition(VolumeMap map, ivec3 cell, uint base, uint side, uint axis) {
-    vec3 center = volumeToWorld(map, cellCentre(cell));
-    return center + cellAxes(map, center) * planeMiddle(base, side, axis);
 }
 
 #endif

@@ -3,6 +3,7 @@
 #ifndef HISTORY_ROUNDS_GLSL
 #define HISTORY_ROUNDS_GLSL
 #include "common/scene.glsl"
+#include "history/still.glsl"
 
 // Short rounds of all voxels after a change, extrapolated (bounce/acceleration.glsl). If 98 % of the light is
 // reflected, a twentieth of it is missing after them.
@@ -15,10 +16,6 @@ const uint CONVERGED_ROUNDS = 8;
 // A pixel stores its age and the rounds of its mean after the first as age + AGES * rounds, exact in a half
 // float.
 const uint AGES = 64;
-
-bool cameraIsStill() {
-    return camera.view_projection == camera.previous_view_projection;
-}
 
 // Frames in which all voxels gather in a short round: a quarter of a long one, so that no frame gathers from
 // more than a quarter of the voxels.

@@ -6,7 +6,7 @@
 #include "params.glsl"
 #include "gbuffer/motion.glsl"
 #include "gbuffer/read.glsl"
-#include "history/rounds.glsl"
+#include "history/still.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

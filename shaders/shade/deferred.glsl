@@ -8,13 +8,9 @@
 #include "lights/sky.glsl"
 #include "shade/filter.glsl"
 #include "shade/demodulate.glsl"
+#include "modules/gathered_light.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-
-uniform sampler2D gatheredDiffuse;
-uniform sampler2D gatheredSpecular;
-uniform sampler2D smoothedDiffuse;
-uniform sampler2D smoothedSpecular; // a: weight of the pixel, less if its light is older than a change
 
 uniform writeonly image2D sampledRadiance; // total, including emission
 uniform writeonly image2D sampledDirect;
@@ -23,32 +19,6 @@ uniform writeonly image2D sampledSpecular;
 uniform writeonly image2D sampledOpenness; // 1: open
 uniform writeonly image2D surfaceNormal; // * 0.5 + 0.5
 
-Filtered unfiltered(ivec2 pixel) {
-    return Filtered(texelFetch(gatheredDiffuse, pixel, 0), texelFetch(gatheredSpecular, pixel, 0).rgb);
-}
-
-// Mean of 2x2 smoothed pixels: with smooth.comp, of 8x8 pixels that see the same surface.
-Filtered filtered(ivec2 pixel, GBufferSurface seen) {
-    vec4 diffuse = vec4(0.0);
-    vec3 specular = vec3(0.0);
-    float diffuse_weights = 0.0, specular_weights = 0.0;
-    EdgeStop stop = edgeStopOf(pixel, seen);
-    for (int i = 0; i < 4; i++) {
-        ivec2 at = pixel + ivec2(i & 1, i >> 1);
-        FilterWeights weights = filterWeights(at, stop);
-        vec4 reflected = texelFetch(smoothedSpecular, at, 0);
-        weights.diffuse *= reflected.a;
-        weights.specular *= reflected.a;
-        diffuse += weights.diffuse * texelFetch(smoothedDiffuse, at, 0);
-        specular += weights.specular * reflected.rgb;
-        diffuse_weights += weights.diffuse;
-        specular_weights += weights.specular;
-    }
-    vec3 reflectance = max(lobeReflectance(seen.surface, seen.to_viewer), MIN_REFLECTANCE);
-    specular *= reflectance / max(specular_weights, 1e-6);
-    return Filtered(diffuse / max(diffuse_weights, 1e-6), specular);
-}
-
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
@@ -56,7 +26,7 @@ void main() {
     vec3 total = vec3(0.0), normal = vec3(-1.0), lit = vec3(0.0), diffuse = vec3(0.0);
     Filtered light = Filtered(vec4(0.0, 0.0, 0.0, 1.0), vec3(0.0));
     if (seen.any) {
-        light = params.pattern == 1 ? unfiltered(pixel) : filtered(pixel, seen);
+        light = gatheredLight(pixel, seen);
         lit = directLight(seen.surface, seen.position, seen.face, seen.to_viewer);
         diffuse = seen.surface.albedo * light.hemisphere.rgb;
         total = lit + diffuse + light.specular + seen.emission;

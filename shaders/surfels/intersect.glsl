@@ -18,6 +18,7 @@ struct SurfelHit {
     float distance; // of the hit; on a miss, the distance searched [m]
     vec4 light; // radiance and 1, or 0 on a miss
     float emitted; // share of the radiance that sampled emitters emit
+    uint side; // index of the side that is hit
 };
 
 // Intersects a ray from `at` along `dir` with a cell's surfels between `enter` and `leave`. Returns the

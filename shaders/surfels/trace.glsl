@@ -49,7 +49,7 @@ SurfelHit traceCascade(int cascade, ConeOrigin o, vec3 d, float from, float rang
             float t = intersectCell(foundIn(cells, bit), cell, at, dir, facing, enter, leave, end, met);
             if (t < end) {
                 uvec2 packed = HIT_RADIANCE.list[met];
-                return SurfelHit(t * voxel, vec4(lightOf(packed), 1.0), numberOf(packed));
+                return SurfelHit(t * voxel, vec4(lightOf(packed), 1.0), numberOf(packed), met);
             }
         }
         bvec3 crossed = equal(borders, vec3(leave));
@@ -57,12 +57,12 @@ SurfelHit traceCascade(int cascade, ConeOrigin o, vec3 d, float from, float rang
         cell = mix(next, mix(first - 1, first + edge, ahead), crossed);
         enter = leave;
     }
-    return SurfelHit(min(enter, end) * voxel, vec4(0.0), 0.0); // nothing is known outside the grid
+    return SurfelHit(min(enter, end) * voxel, vec4(0.0), 0.0, 0u); // nothing is known outside the grid
 }
 
 // First surface within `range` [m] along d. Continues from each cascade into the next coarser one.
 SurfelHit traceSurfels(ConeOrigin o, vec3 d, float range) {
-    SurfelHit met = SurfelHit(0.0, vec4(0.0), 0.0);
+    SurfelHit met = SurfelHit(0.0, vec4(0.0), 0.0, 0u);
     for (int k = o.cascade; k < CASCADE_COUNT && met.light.a == 0.0 && met.distance < range; k++)
         met = traceCascade(k, o, d, met.distance, range);
     return met;
