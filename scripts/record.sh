@@ -72,6 +72,21 @@ record() {
             keep_json moving "$work/moving.json" "${way[@]}"
             ;;
         scenes) sweep configs/sweeps/scenes.ron --reference 1024 ;;
+        families) # the charts, the fronts, and pictures of two scenes too
+            sweep configs/sweeps/families.ron --reference 1024
+            run report "$work/families" --metric flip
+            cp "$work/families/report/fronts.csv" "$out/fronts.csv"
+            mkdir -p docs/families
+            cp "$work"/families/report/total-flip*.svg docs/families/
+            local id scene method
+            while IFS=, read -r id scene method; do
+                cp "$work/families/pictures/$id.jpg" "docs/families/$scene-$method.jpg"
+            done < <(sed -nE 's/^([0-9a-f]+),done,(corridor|street),(rays|cones|thesis|ddgi|ssgi|ssgi and rays|rsm|lpv),.*/\1,\2,\3/p' \
+                "$work/families/sweep.csv" | tr ' ' '-')
+            ;;
+        methods) bench configs/rays.ron configs/cones.ron configs/thesis.ron configs/ddgi.ron configs/ssgi.ron \
+            configs/ssgi_rays.ron configs/rsm.ron configs/lpv.ron --sizes 1920x1080 \
+            --axis "scene=\"cornell\",\"atrium\",\"$sponza\"" --rounds 2 --frames 20 ;;
         exposures) sweep configs/sweeps/thesis.ron --reference 1024 ;;
         lamps) sweep configs/sweeps/lamps.ron --reference 512 ;;
         sponza) # the chart alone
@@ -88,5 +103,5 @@ record() {
     esac
 }
 
-[[ $# -gt 0 ]] || set -- thesis rays pixels cells rooms lights moving actors scenes exposures lamps sponza voxels
+[[ $# -gt 0 ]] || set -- thesis rays pixels cells rooms lights moving actors scenes families methods exposures lamps sponza voxels
 for name; do record "$name"; done

@@ -13,7 +13,7 @@ void main() {
     GBufferSurface seen = gbufferAt(pixel);
     if (!seen.any) return;
     vec3 off = seen.position - camera.position;
-    vec2 at_unit = 4.0 / vec2(camera.size) / vec2(camera.projection[0][0], camera.projection[1][1]);
+    vec2 at_unit = 4.0 / (vec2(camera.size) * vec2(camera.projection[0][0], camera.projection[1][1]));
     float forward = dot(off, camera.direction), cosine = max(dot(seen.face, seen.to_viewer), 0.1);
     float area = abs(at_unit.x * at_unit.y) * forward * forward * (forward / length(off)) / cosine;
     addBlocker(seen.position, seen.face, area, 1);

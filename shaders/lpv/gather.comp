@@ -29,6 +29,7 @@ void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
     GBufferSurface seen = gbufferAt(pixel);
-    vec3 light = seen.any ? lightAt(seen.position, seen.surface.normal) : vec3(0.0);
-    imageStore(gatheredDiffuse, pixel, vec4(light, 1.0));
+    vec4 light = vec4(0.0, 0.0, 0.0, 1.0);
+    if (seen.any) light.rgb = lightAt(seen.position, seen.surface.normal);
+    imageStore(gatheredDiffuse, pixel, light);
 }

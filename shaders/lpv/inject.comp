@@ -18,7 +18,7 @@ layout(std430) buffer LpvInjected { uint words[]; } lpvInjected; // 64-bit sums:
 void addLight(uint number, float light) {
     float scaled = light * LIGHT_UNIT;
     bool negative = scaled < 0.0;
-    scaled = min(abs(scaled), 1e18);
+    scaled = min(abs(scaled), 1e18); // far from the end of the 64 bits
     uint high = uint(scaled / 4294967296.0), low = uint(scaled - float(high) * 4294967296.0);
     if (negative) { // two's complement
         high = ~high + (low == 0u ? 1u : 0u);

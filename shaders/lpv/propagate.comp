@@ -16,8 +16,7 @@ layout(std430) buffer LpvSums { vec4 coefficients[]; } lpvSums;
 const float FAR_FACE = 0.4006697, SIDE_FACE = 0.4234414;
 
 vec3 axisDirection(int i) {
-    vec3 d = vec3(equal(ivec3(i >> 1), ivec3(0, 1, 2)));
-    return (i & 1) == 0 ? d : -d;
+    return ((i & 1) == 0 ? 1.0 : -1.0) * vec3(equal(ivec3(i >> 1), ivec3(0, 1, 2)));
 }
 
 // Blockers at the four corners of the face between a cell and the one before it along d: the larger of

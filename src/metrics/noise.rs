@@ -1,6 +1,6 @@
 //! Noise of a reference, from the means of its even and odd samples.
 
-use super::{Compared, Linear, MetricError, means, relmse, structure_noise};
+use super::{Compared, Linear, Metric, MetricError, RELMSE, means, relmse, structure_noise};
 
 /// Noise of a reference, by metric.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +14,17 @@ pub struct Noise {
 }
 
 impl Noise {
+    /// Error of the mean of all samples by a metric, if it is known.
+    pub(crate) fn in_mean(&self, metric: &Metric) -> Option<f64> {
+        let noise = match metric.key {
+            RELMSE => self.relmse / 4.0,
+            "flip" => self.flip,
+            "structure" => self.structure,
+            _ => return None,
+        };
+        noise.is_finite().then_some(noise)
+    }
+
     /// The noise of `mean`, the mean of both halves. The difference between one half and `mean` has
     /// the variance of the error of `mean`, so their FLIP needs no scale factor. FLIP is not linear.
     ///

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test uses a part")]
 
 pub mod closed_meshes;
+pub mod figures;
 pub mod ggx;
 pub mod model_file;
 pub mod triangles;

@@ -5,7 +5,7 @@ use crate::campaign::points::{labelled, total_first};
 use crate::campaign::record::Outcome;
 use crate::campaign::sweep::{Collected, PointRecord, Subject, parts_of};
 use crate::measure::Point;
-use crate::metrics::{Metric, RELMSE, within_noise};
+use crate::metrics::{Metric, Noise, RELMSE, within_noise};
 use indexmap::IndexMap;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -29,7 +29,8 @@ pub struct Dot {
     /// Scores by part and metric.
     pub scores: BTreeMap<String, BTreeMap<String, f64>>,
     /// Noise of the reference by part.
-    pub noise: BTreeMap<String, f64>,
+    #[serde(skip)]
+    pub noise: BTreeMap<String, Noise>,
     pub warnings: Vec<String>,
     /// Its graph's name.
     pub graph: String,
@@ -57,6 +58,9 @@ pub struct Chart {
     pub part: String,
     pub metric: &'static Metric,
     pub points: Vec<usize>,
+    /// Number of the points' colours, by point, and the colours.
+    pub groups: Vec<usize>,
+    pub colors: Vec<String>,
     pub svg: String,
 }
 
@@ -69,6 +73,8 @@ pub struct Scored {
     pub error: f64,
     /// Whether its relMSE is within the noise of the reference.
     pub noisy: bool,
+    /// Error that the noise of the reference alone causes.
+    pub noise: Option<f64>,
     /// Experiment or graph of the dot, empty if there is only one.
     pub experiment: String,
     /// Whether it is an unchanged experiment among points with other settings.
@@ -113,7 +119,11 @@ impl Dot {
             bytes: point.stats.total_bytes,
             stages: stages.into_iter().collect(),
             scores: parts_of(point),
-            noise: point.noise.clone(),
+            noise: point
+                .scores
+                .keys()
+                .map(|part| (part.clone(), point.noise_of(part)))
+                .collect(),
             warnings: point.stats.warnings.clone(),
             graph: point.stats.graph.clone(),
             experiment: record.about.experiment.clone(),
@@ -263,7 +273,7 @@ impl Data {
             let error = metric.distance(*scores.get(metric.key)?);
             let noisy = within_noise(
                 *scores.get(RELMSE).unwrap_or(&f64::INFINITY),
-                dot.noise.get(part).copied(),
+                dot.noise.get(part).map(|n| n.relmse),
             );
             let experiment = if several.contains(experiment_of(dot)) {
                 &dot.graph
@@ -277,6 +287,7 @@ impl Data {
                 ms: dot.ms,
                 error,
                 noisy,
+                noise: dot.noise.get(part).and_then(|n| n.in_mean(metric)),
                 experiment,
                 preset,
             })

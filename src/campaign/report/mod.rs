@@ -1,6 +1,7 @@
 //! Report of sweeps: one page that needs no network, charts as SVG, and a table.
 
 mod data;
+mod equal;
 mod page;
 mod pareto;
 mod scatter;
@@ -9,7 +10,7 @@ mod scenes;
 pub(crate) use data::{Data, Dot, Scored};
 pub use pareto::pareto;
 
-use super::charts::{Bar, bars};
+use super::charts::{Bar, bars, color, hex};
 use super::record::{File, write_files};
 use super::sweep::{Collected, csv};
 use crate::lab::LabError;
@@ -22,7 +23,8 @@ const MAX_BARS: usize = 40;
 
 /// Writes `index.html`, `points.csv` and the charts to a folder: error against time for every part
 /// of the light and every metric, and the passes of the points on the Pareto front of the total.
-/// Where there are several scenes, also a table of them, with `scenes.csv`.
+/// Where there are several scenes, also a table of them, with `scenes.csv`; where there are several
+/// experiments, what each reaches in equal time, with `fronts.csv`.
 pub(crate) fn write(
     collected: &Collected,
     metrics: &[&'static Metric],
@@ -41,6 +43,7 @@ pub(crate) fn write(
         .map(|s| Ok((data.name("passes", s), passes(&data, s)?)))
         .collect::<Result<_, LabError>>()?;
     let scenes = scenes::Scenes::of(&data);
+    let equal = equal::Equal::of(&data);
     let mut files: Vec<File> = vec![("points.csv".into(), table.clone().into_bytes())];
     let charted = charts
         .iter()
@@ -50,7 +53,11 @@ pub(crate) fn write(
     if let Some(scenes) = &scenes {
         files.push(("scenes.csv".into(), scenes.csv(&data)?.into_bytes()));
     }
-    let page = page::page(&data, &charts, &passes, &table, scenes.as_ref())?;
+    if let Some(equal) = &equal {
+        files.push(("fronts.csv".into(), equal.csv()?.into_bytes()));
+    }
+    let tables = (scenes.as_ref(), equal.as_ref());
+    let page = page::page(&data, &charts, &passes, &table, tables)?;
     files.push(("index.html".into(), page.into_bytes()));
     write_files(folder, &files)?;
     Ok(files.into_iter().map(|f| folder.join(f.0)).collect())
@@ -69,12 +76,17 @@ fn charts(data: &Data, metrics: &[&'static Metric]) -> Result<Vec<Chart>, LabErr
                 let name = data.name(&format!("{part}-{}", metric.key), subject);
                 let svg = scatter::scatter(&format!("{title}: {part}"), &metric.axis(), &dots)?;
                 let points = dots.iter().map(|d| d.index).collect();
+                let names = scatter::groups(&dots);
+                let group = |d: &Scored| names.iter().position(|n| *n == d.experiment);
+                let groups = dots.iter().map(|d| group(d).unwrap_or(0)).collect();
                 out.push(Chart {
                     name,
                     subject,
                     part: part.clone(),
                     metric,
                     points,
+                    groups,
+                    colors: (0..names.len()).map(|i| hex(color(i))).collect(),
                     svg,
                 });
             }

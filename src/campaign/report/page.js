@@ -180,7 +180,11 @@ function update() {
   document.getElementById("settings").textContent = data.settings[state.subject] || "";
   document.querySelectorAll("figure[data-passes]").forEach((f) => { f.hidden = Number(f.dataset.passes) !== state.subject; });
   const shown = data.dots.map((_, i) => i).filter((i) => kept(data.dots[i]));
-  const best = pareto(shown);
+  // Each colour of a chart has a front of its own.
+  const charted = data.charts.find((c) => c.subject === state.subject && c.part === state.part && c.metric === state.metric);
+  const groups = charted ? charted.colors.map((_, g) => shown.filter((i) => charted.groups[charted.points.indexOf(i)] === g)) : [];
+  const fronts = groups.map(pareto);
+  const best = fronts.flat();
   document.querySelectorAll("figure[data-chart]").forEach((figure) => {
     const chart = data.charts[Number(figure.dataset.chart)];
     figure.hidden = chart.subject !== state.subject || chart.part !== state.part || chart.metric !== state.metric;
@@ -191,7 +195,7 @@ function update() {
       const index = chart.points[i];
       const hollow = circle.dataset.hollow ?? (circle.dataset.hollow = circle.getAttribute("fill") === "none" ? "yes" : "no");
       const red = best.includes(index);
-      const ink = red ? "#C83C28" : data.colors[0];
+      const ink = red && chart.colors.length < 2 ? data.front : chart.colors[chart.groups[i]];
       circle.classList.toggle("off", !kept(data.dots[index]));
       circle.classList.toggle("held", index === state.held);
       circle.setAttribute("r", red ? 5 : 4);
@@ -199,15 +203,17 @@ function update() {
       circle.setAttribute("stroke", hollow === "yes" ? ink : "none");
       at.set(index, [Number(circle.getAttribute("cx")), Number(circle.getAttribute("cy"))]);
     });
-    // The front is the only line of its colour.
-    let line = figure.querySelector("polyline[stroke='#C83C28']");
-    if (!line) return;
-    const points = [];
-    for (const i of best.filter((i) => at.has(i))) {
-      if (points.length) points.push([at.get(i)[0], points[points.length - 1][1]]);
-      points.push(at.get(i));
-    }
-    line.setAttribute("points", points.map((p) => p.join(",")).join(" "));
+    // The front of a colour is the first line that has it.
+    chart.colors.forEach((color, group) => {
+      const line = figure.querySelector(`polyline[stroke='${chart.colors.length < 2 ? data.front : color}']`);
+      if (!line) return;
+      const points = [];
+      for (const i of fronts[group].filter((i) => at.has(i))) {
+        if (points.length) points.push([at.get(i)[0], points[points.length - 1][1]]);
+        points.push(at.get(i));
+      }
+      line.setAttribute("points", points.map((p) => p.join(",")).join(" "));
+    });
   });
   table(best);
 }

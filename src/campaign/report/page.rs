@@ -1,8 +1,10 @@
 //! The page: data, charts, style and script in one file.
 
 use super::data::{Chart, Data, Dot};
+use super::equal::Equal;
+use super::scatter::FRONT;
 use super::scenes::Scenes;
-use crate::campaign::charts::COLORS;
+use crate::campaign::charts::{COLORS, hex};
 use crate::campaign::page::{page as whole_page, url};
 use crate::campaign::points::labelled;
 use crate::campaign::record::first_line;
@@ -28,6 +30,8 @@ struct PageChart<'a> {
     part: &'a str,
     metric: &'a str,
     points: &'a [usize],
+    groups: &'a [usize],
+    colors: &'a [String],
 }
 
 /// A metric: key, title, and whether it is a ratio.
@@ -40,6 +44,7 @@ struct PageData<'a> {
     settings: &'a [String],
     parts: &'a [String],
     colors: Vec<String>,
+    front: String,
     metrics: Vec<PageMetric>,
     charts: Vec<PageChart<'a>>,
     dots: Vec<PageDot<'a>>,
@@ -58,6 +63,8 @@ fn page_data<'a>(data: &'a Data, charts: &'a [Chart]) -> PageData<'a> {
         part: &c.part,
         metric: c.metric.key,
         points: &c.points,
+        groups: &c.groups,
+        colors: &c.colors,
     });
     PageData {
         names: &data.names,
@@ -68,6 +75,7 @@ fn page_data<'a>(data: &'a Data, charts: &'a [Chart]) -> PageData<'a> {
             .iter()
             .map(|c| format!("rgb({},{},{})", c.0, c.1, c.2))
             .collect(),
+        front: hex(FRONT),
         metrics: METRICS
             .iter()
             .map(|m| (m.key, m.title, m.best == Best::One))
@@ -83,7 +91,7 @@ pub fn page(
     charts: &[Chart],
     passes: &[(String, String)],
     table: &str,
-    scenes: Option<&Scenes>,
+    (scenes, equal): (Option<&Scenes>, Option<&Equal>),
 ) -> Result<String, LabError> {
     // Without `<` no string can close the script element.
     let json = serde_json::to_string(&page_data(data, charts))
@@ -95,7 +103,8 @@ pub fn page(
         p {
             (data.dots.len()) " points measured, " (data.failed.len()) " failed, " (data.left) " left. Times are GPU \
              milliseconds of a frame, medians. Errors are against a path-traced reference. Only points of one scene, camera, \
-             size and device are put on one chart. Hollow: less than 4 times the noise of the reference. "
+             size and device are put on one chart. Lines: the points of each colour that none of the colour beats in both time and \
+             error. Vertical bars: the noise of the reference. Hollow: less than 4 times that noise. "
             a download="points.csv" href=(url("text/csv", table.as_bytes())) { "points.csv" }
         }
         @if let Some(scenes) = scenes { (scenes.html(data)) }
@@ -111,6 +120,7 @@ pub fn page(
             }
             @for (i, chart) in charts.iter().enumerate() { figure data-chart=(i) hidden { (PreEscaped(&chart.svg)) } }
         }
+        @if let Some(equal) = equal { (equal.html()) }
         h2 { "Passes" }
         @for (i, (_, svg)) in passes.iter().enumerate() { figure data-passes=(i) hidden { (PreEscaped(svg)) } }
         h2 { "Points" }

@@ -1,4 +1,4 @@
-//! Error against time, both logarithmic, with the Pareto front.
+//! Error against time, both logarithmic, with a Pareto front for each experiment.
 
 use super::data::Scored;
 use super::pareto::pareto;
@@ -7,13 +7,22 @@ use crate::lab::LabError;
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (900, 560);
-/// Colour of the front; no other colour is red.
-const FRONT: RGBColor = RGBColor(200, 60, 40);
+/// Colour of the front of a single experiment.
+pub const FRONT: RGBColor = RGBColor(200, 60, 40);
 
-/// The chart as SVG. It has one circle per dot, in order, and one colour per experiment. The front
-/// has larger circles and a red line; with one experiment its circles are red too. Hollow circles
-/// are within the noise of the reference. Presets have a square. The legend is in the corner with
-/// the fewest points.
+/// Experiments of dots in the order of their colours.
+pub fn groups(dots: &[Scored]) -> Vec<&str> {
+    let mut names: Vec<&str> = dots.iter().map(|d| d.experiment.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+/// The chart as SVG. It has one circle per dot, in order, one colour per experiment, and before all
+/// other lines of that colour a front: the points of the experiment that none of its others beats
+/// in both time and error, with larger circles. The only front is red. Vertical bars show the
+/// error that the noise of the reference alone causes; hollow circles are within it. Presets have
+/// a square. The legend is in the corner with the fewest points.
 pub fn scatter(title: &str, metric: &str, dots: &[Scored]) -> Result<String, LabError> {
     drawn(title, SIZE, |area| draw(area, title, metric, dots))
 }
@@ -33,24 +42,41 @@ fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), F
     let y = Axis::log(metric, ys);
     let title = format!("{title}, {metric} against time ({} points)", dots.len());
     let mut chart = plane(area, &title, &x, &y)?;
-    let pairs: Vec<(f64, f64)> = dots.iter().map(|d| (d.ms, d.error)).collect();
-    let front = pareto(&pairs);
-    let mut steps: Vec<(f64, f64)> = Vec::new();
-    for i in &front {
-        let at = place(&dots[*i]);
-        steps.extend(steps.last().map(|last| (at.0, last.1)));
-        steps.push(at);
-    }
-    chart.draw_series(std::iter::once(PathElement::new(
-        steps,
-        FRONT.stroke_width(1),
-    )))?;
-    let mut experiments: Vec<&str> = dots.iter().map(|d| d.experiment.as_str()).collect();
-    experiments.sort_unstable();
-    experiments.dedup();
+    let experiments = groups(dots);
     let color_of = |name: &str| color(experiments.iter().position(|e| *e == name).unwrap_or(0));
+    let mut on_fronts: Vec<usize> = Vec::new();
+    for name in &experiments {
+        let own: Vec<usize> = (0..dots.len())
+            .filter(|i| dots[*i].experiment == *name)
+            .collect();
+        let pairs: Vec<(f64, f64)> = own.iter().map(|i| (dots[*i].ms, dots[*i].error)).collect();
+        let front = pareto(&pairs).into_iter().map(|k| own[k]);
+        let mut steps: Vec<(f64, f64)> = Vec::new();
+        for i in front {
+            let at = place(&dots[i]);
+            steps.extend(steps.last().map(|last| (at.0, last.1)));
+            steps.push(at);
+            on_fronts.push(i);
+        }
+        let color = if experiments.len() < 2 {
+            FRONT
+        } else {
+            color_of(name)
+        };
+        let line = PathElement::new(steps, color.stroke_width(1));
+        chart.draw_series(std::iter::once(line))?;
+    }
+    chart.draw_series(dots.iter().filter_map(|d| {
+        let (x, y) = place(d);
+        let noise = d.noise.filter(|n| *n > 0.0)?;
+        let ends = vec![(x, (y - noise).max(ys.0)), (x, (y + noise).min(ys.1))];
+        Some(PathElement::new(
+            ends,
+            color_of(&d.experiment).mix(0.4).stroke_width(1),
+        ))
+    }))?;
     chart.draw_series(dots.iter().enumerate().map(|(i, d)| {
-        let on_front = front.contains(&i);
+        let on_front = on_fronts.contains(&i);
         let color = if on_front && experiments.len() < 2 {
             FRONT
         } else {
@@ -153,6 +179,7 @@ mod tests {
             ms,
             error,
             noisy: false,
+            noise: None,
             experiment: experiment.into(),
             preset: false,
         };
@@ -176,6 +203,33 @@ mod tests {
         );
         assert!(["threads", "raster"].iter().all(|name| svg.contains(name)));
         assert_eq!(svg.matches("threads").count(), 1, "in the key alone");
+        // Each experiment has a front of its own, also where another one is better.
+        let fronts = |svg: &str| -> Vec<(String, usize)> {
+            let lines = svg.lines().filter(|l| l.starts_with("<polyline"));
+            let ink =
+                |l: &str, name: &str| Some(l.split(name).nth(1)?.split('"').next()?.to_string());
+            lines
+                .filter_map(|l| {
+                    let points = ink(l, " points=\"")?.split_whitespace().count();
+                    Some((ink(l, "stroke=\"")?, points))
+                })
+                .filter(|(stroke, _)| colours.contains(stroke))
+                .collect()
+        };
+        assert_eq!(
+            fronts(&svg),
+            [(colours[2].clone(), 1), (colours[0].clone(), 3)]
+        );
+        // Noise is a bar about the point.
+        let barred = [Scored {
+            noise: Some(0.05),
+            ..dot(1.0, 0.2, "threads")
+        }];
+        let lines = |dots: &[Scored]| {
+            let svg = scatter("Sponza", "relMSE", dots).unwrap();
+            svg.matches("<polyline").count()
+        };
+        assert_eq!(lines(&barred), lines(&dots[..1]) + 1);
         let marked = [
             Scored {
                 preset: true,

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 /// Settings that distinguish rows. All others distinguish methods.
 const OF_A_ROW: [&str; 4] = ["scene", "camera", "size", "time"];
-/// Largest number of methods in a row.
+/// Largest number of methods in a row. If there are more, the first of each graph is shown.
 const MAX_METHODS: usize = 12;
 /// Numbers of a part, by metric.
 type Scores = BTreeMap<String, f64>;
@@ -41,6 +41,17 @@ enum Cell {
     Left,
 }
 
+/// The first method of each graph, in order.
+fn first_of_each_graph(all: &[((Subject, String), String, Cell)], data: &Data) -> Vec<String> {
+    let mut first: IndexMap<&str, &String> = IndexMap::new();
+    for (_, method, cell) in all {
+        if let Cell::Measured(i) = cell {
+            first.entry(&data.dots[*i].graph).or_insert(method);
+        }
+    }
+    first.into_values().cloned().collect()
+}
+
 impl Scenes {
     /// `None` with fewer than two scenes.
     pub fn of(data: &Data) -> Option<Scenes> {
@@ -65,7 +76,11 @@ impl Scenes {
         });
         let all: Vec<_> = measured.chain(failed).collect();
         let methods: IndexSet<String> = all.iter().map(|a| a.1.clone()).collect();
-        let methods: Vec<String> = methods.into_iter().take(MAX_METHODS).collect();
+        let mut methods: Vec<String> = methods.into_iter().collect();
+        if methods.len() > MAX_METHODS {
+            methods = first_of_each_graph(&all, data);
+        }
+        methods.truncate(MAX_METHODS);
         let mut rows: IndexMap<(Subject, String), Vec<Cell>> = IndexMap::new();
         for (key, method, cell) in all {
             let Some(column) = methods.iter().position(|m| *m == method) else {

@@ -1,0 +1,332 @@
+//! Families of methods in experiments with known answers, and what their graphs are made of. docs/families.md has the
+//! table of them, and every row of it is measured here again, on the software device:
+//! `CONELAB_BLESS=1 cargo test --test families -- --test-threads=1` writes it anew.
+
+mod common;
+
+use common::figures::{ANY, Row, check, row};
+use common::{assert_clean, lab, root};
+use conelab::diagnostics::{At, Loc};
+use conelab::experiment::{CameraChoice, Experiment};
+use conelab::lab::{Lab, parts_of};
+use conelab::measure::reference::{Goal, gather};
+use conelab::metrics::Linear;
+use conelab::scene::Scene;
+use std::collections::BTreeMap;
+use std::f64::consts::{PI, TAU};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Graphs, and settings that suit a software device.
+const FAMILIES: [(&str, &[(&str, &str)]); 8] = [
+    ("rays", &[("voxel_dim", "64")]),
+    ("cones", &[("voxel_dim", "64")]),
+    ("thesis", &[("voxel_dim", "64")]),
+    ("ddgi", &[("voxel_dim", "64"), ("probe_rows", "12")]),
+    ("ssgi", &[]),
+    ("ssgi_rays", &[("voxel_dim", "64")]),
+    ("rsm", &[("rsm_spacing", "1")]),
+    ("lpv", &[]),
+];
+
+fn experiment(family: &str, set: &[(&str, &str)], scene: &str, size: (u32, u32)) -> Experiment {
+    let mut e =
+        Experiment::read(&root().join("configs").join(family).with_extension("ron")).unwrap();
+    e.scene = scene.into();
+    e.size = size;
+    for (name, value) in set.iter().chain(&[("shadow_dim", "1024")]) {
+        let name = Loc {
+            value: (*name).into(),
+            at: At::default(),
+        };
+        e.params.push((name, (*value).into()));
+    }
+    e
+}
+
+fn opened(e: &Experiment) -> Arc<Scene> {
+    let scene = Scene::open(&e.scene, &|_, _| ControlFlow::Continue(())).unwrap();
+    e.adapted(Arc::new(scene)).unwrap()
+}
+
+/// The parts of an experiment's light once it has converged.
+fn converged(lab: &Lab, e: &Experiment) -> BTreeMap<String, Linear> {
+    let prepared = lab.prepare(e, opened(e), |graph| {
+        Ok(parts_of(graph).into_iter().map(|p| p.texture).collect())
+    });
+    let (mut session, _) = prepared.unwrap_or_else(|e| panic!("{e}"));
+    for _ in 0..session.converging_frames().max(1) {
+        session.frame(0.0).unwrap();
+    }
+    session.finish().unwrap();
+    assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
+    let parts = session.parts().unwrap();
+    drop(session);
+    assert_clean(lab);
+    parts
+}
+
+fn reference(lab: &Lab, e: &Experiment, bounces: u32, samples: u64) -> BTreeMap<String, Linear> {
+    let found = gather(
+        lab,
+        e,
+        &opened(e),
+        bounces,
+        Goal::Samples(samples),
+        &mut |_| ControlFlow::Continue(()),
+    );
+    let parts = found.unwrap_or_else(|e| panic!("{e}")).parts;
+    parts
+        .into_iter()
+        .map(|(name, part)| (name, part.mean))
+        .collect()
+}
+
+/// A scene file of its own.
+fn scene(name: &str, text: &str) -> String {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("families");
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join(format!("{name}.ron"));
+    std::fs::write(&file, text).unwrap();
+    file.to_string_lossy().into_owned()
+}
+
+/// One row for each family.
+fn rows(
+    figure: &'static str,
+    wanted: (f64, f64),
+    families: &[(&str, &[(&str, &str)])],
+    value: impl Fn(&str, &[(&str, &str)]) -> f64,
+) -> Vec<Row> {
+    families
+        .iter()
+        .map(|(name, set)| row(*name, figure, value(name, set), wanted))
+        .collect()
+}
+
+/// Share of the cosine-weighted hemisphere above `p` with normal `n` that a polygon covers (Lambert 1760): counter-clockwise
+/// as seen from `p`, all of it above the horizon.
+fn form_factor(p: [f64; 3], n: [f64; 3], corners: &[[f64; 3]]) -> f64 {
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ]
+    };
+    let unit = |a: [f64; 3]| a.map(|v| v / dot(a, a).sqrt());
+    let towards: Vec<[f64; 3]> = corners
+        .iter()
+        .map(|c| unit([c[0] - p[0], c[1] - p[1], c[2] - p[2]]))
+        .collect();
+    let edges = (0..towards.len()).map(|i| {
+        let (a, b) = (towards[i], towards[(i + 1) % towards.len()]);
+        dot(a, b).clamp(-1.0, 1.0).acos() * dot(unit(cross(a, b)), n)
+    });
+    (edges.sum::<f64>() / TAU).abs()
+}
+
+/// R1. A floor of albedo 0.8 under a sun at the zenith lights a dark wall, which the sun does not reach: its light is the
+/// floor's radiance times the share of its hemisphere that the floor covers. The view is square to the wall.
+#[test]
+fn corner() {
+    let lab = lab(root());
+    let file = scene(
+        "corner",
+        "(materials: { \"floor\": (base_color: (0.8, 0.8, 0.8, 1.0), specular: 0.0),
+                       \"wall\": (base_color: (0.1, 0.1, 0.1, 1.0), specular: 0.0) },
+          meshes: { \"corner\": [
+              Quad(material: \"floor\", corners: ((-2, 0, 3), (2, 0, 3), (2, 0, 0), (-2, 0, 0))),
+              Quad(material: \"wall\", corners: ((-2, 0, 0), (2, 0, 0), (2, 2, 0), (-2, 2, 0)))] },
+          lights: [Directional(name: \"sun\", color: (3, 3, 3), direction: (0, -1, 0), shadow: true)],
+          sky: (0, 0, 0),
+          cameras: { \"default\": (eye: (0, 1.2, 5), target: (0, 1.2, 0), fov_y: 40) })",
+    );
+    let (width, height) = (64usize, 48usize);
+    // Pixels of the wall, 30 cm from its edges, and their exact light.
+    let half = 5.0 * 20f64.to_radians().tan();
+    let mut wall = Vec::new();
+    for i in 0..width * height {
+        let x = (2.0 * ((i % width) as f64 + 0.5) / width as f64 - 1.0) * half * width as f64
+            / height as f64;
+        let y = 1.2 + (1.0 - 2.0 * ((i / width) as f64 + 0.5) / height as f64) * half;
+        if x.abs() < 1.7 && (0.3..1.7).contains(&y) {
+            let floor = [
+                [-2.0, 0.0, 0.0],
+                [2.0, 0.0, 0.0],
+                [2.0, 0.0, 3.0],
+                [-2.0, 0.0, 3.0],
+            ];
+            let share = form_factor([x, y, 0.0], [0.0, 0.0, 1.0], &floor);
+            wall.push((i, 0.1 * 0.8 * 3.0 / PI * share));
+        }
+    }
+    assert!(wall.len() > 400, "{} pixels of the wall", wall.len());
+    let ratio = |light: &Linear| {
+        let sum: f64 = wall.iter().map(|(i, _)| f64::from(light.rgb[*i][1])).sum();
+        sum / wall.iter().map(|w| w.1).sum::<f64>()
+    };
+    let size = (width as u32, height as u32);
+    let one = reference(&lab, &experiment("rays", &[], &file, size), 1, 256);
+    let exact = ratio(&one["diffuse"]);
+    assert!(
+        (exact - 1.0).abs() < 0.01,
+        "the reference is {exact} of the closed form"
+    );
+    let of = |name: &str, set: &[(&str, &str)]| {
+        ratio(&converged(&lab, &experiment(name, set, &file, size))["diffuse"])
+    };
+    let mut list = rows("diffuse / exact", (0.95, 1.05), &FAMILIES, of);
+    let whole = [("rsm_spacing", "1"), ("rsm_radius", "1.5"), ("rsm_samples", "4096")];
+    let found = of("rsm", &whole);
+    list.push(row("rsm, whole map", "diffuse / exact", found, (0.95, 1.05)));
+    check("families.md", "R1 corner", &list);
+}
+
+/// R2. A closed box of albedo 0.5 whose walls emit 1 (T1 of docs/trials.md): with all bounces its light is 2 everywhere,
+/// of which surfaces reflect 1.
+#[test]
+fn furnace() {
+    let lab = lab(root());
+    check(
+        "families.md",
+        "R2 furnace",
+        &rows("reflected / exact", (0.98, 1.02), &FAMILIES, |name, set| {
+            let parts = converged(&lab, &experiment(name, set, "furnace", (48, 36)));
+            let light = parts["diffuse"].mean() + 0.5 * parts["specular"].mean();
+            light / 1.0
+        }),
+    );
+}
+
+/// R3. A wall of 3 cm between a lit and a dark chamber, at 20 degrees to the axes: what comes through, in terms of the light of
+/// the lit chamber.
+#[test]
+fn leak() {
+    let lab = lab(root());
+    let turn = |x: f64, y: f64, z: f64| {
+        let (s, c) = 20f64.to_radians().sin_cos();
+        format!("({:.6}, {y}, {:.6})", c * x + s * z, c * z - s * x)
+    };
+    let camera = |side: f64| {
+        let (eye, target) = (turn(side * 1.8, 0.5, 0.8), turn(side * 0.6, -0.4, -0.4));
+        format!("(eye: {eye}, target: {target}, fov_y: 70)")
+    };
+    let file = scene(
+        "leak",
+        &format!(
+            "(materials: {{ \"wall\": (base_color: (0.8, 0.8, 0.8, 1.0), specular: 0.0) }},
+              meshes: {{ \"chambers\": [
+                  Hollow(material: \"wall\", low: (-2, -1, -1), high: (2, 1, 1)),
+                  Box(material: \"wall\", low: (-0.015, -1, -1), high: (0.015, 1, 1))] }},
+              instances: [(meshes: [\"chambers\"], transform: (rotate_deg: (0, 20, 0)))],
+              lights: [Point(name: \"lamp\", color: (2, 2, 2), position: {}, shadow: true)],
+              sky: (0, 0, 0),
+              cameras: {{ \"lit\": {}, \"dark\": {} }})",
+            turn(1.0, 0.6, 0.0),
+            camera(1.0),
+            camera(-1.0)
+        ),
+    );
+    let at = |name: &str, set: &[(&str, &str)], camera: &str| {
+        let mut e = experiment(name, set, &file, (48, 36));
+        e.camera = CameraChoice::Named(camera.into());
+        e
+    };
+    let lit = reference(&lab, &at("rays", &[], "lit"), 64, 64)["diffuse"].mean();
+    check(
+        "families.md",
+        "R3 leak",
+        &rows(
+            "dark chamber / lit chamber",
+            (-ANY, 0.01),
+            &FAMILIES,
+            |name, set| converged(&lab, &at(name, set, "dark"))["diffuse"].mean() / lit,
+        ),
+    );
+}
+
+/// R4. The Cornell box, all bounces: light of the whole picture.
+#[test]
+fn energy() {
+    let lab = lab(root());
+    let size = (64, 48);
+    let expected = reference(&lab, &experiment("rays", &[], "cornell", size), 64, 256);
+    let expected = expected["diffuse"].mean();
+    check(
+        "families.md",
+        "R4 energy",
+        &rows(
+            "diffuse / reference",
+            (0.95, 1.05),
+            &FAMILIES,
+            |name, set| {
+                converged(&lab, &experiment(name, set, "cornell", size))["diffuse"].mean()
+                    / expected
+            },
+        ),
+    );
+}
+
+/// R5. Openness of the floor beside a roof, whose edge makes a soft step (T5 of docs/trials.md). The families that know no
+/// openness are left out.
+#[test]
+fn edge() {
+    let lab = lab(root());
+    let file = scene(
+        "edge",
+        "(materials: { \"white\": (base_color: (0.5, 0.5, 0.5, 1.0), specular: 0.0) },
+          meshes: { \"edge\": [
+              Quad(material: \"white\", corners: ((-6, 0, 6), (6, 0, 6), (6, 0, -6), (-6, 0, -6))),
+              Quad(material: \"white\", corners: ((-5, 1, 6), (0, 1, 6), (0, 1, -6), (-5, 1, -6)))] },
+          sky: (1, 1, 1),
+          cameras: { \"default\": (eye: (3, 0.8, 0), target: (-1, 0, 0), fov_y: 40) })",
+    );
+    let size = (64, 48);
+    let expected = &reference(&lab, &experiment("rays", &[], &file, size), 1, 1024)["occlusion"];
+    let open = FAMILIES
+        .iter()
+        .filter(|f| !["rsm", "lpv"].contains(&f.0))
+        .copied();
+    let open: Vec<_> = open.collect();
+    check(
+        "families.md",
+        "R5 edge",
+        &rows("RMS of openness", (-ANY, 0.08), &open, |name, set| {
+            let light = &converged(&lab, &experiment(name, set, &file, size))["occlusion"];
+            let squares = light.rgb.iter().zip(&expected.rgb);
+            let sum: f64 = squares.map(|(a, b)| f64::from(a[0] - b[0]).powi(2)).sum();
+            (sum / light.rgb.len() as f64).sqrt()
+        }),
+    );
+}
+
+/// Lines of code of a shader, or of all in a folder: neither blank nor a comment.
+fn lines(path: &Path) -> usize {
+    if path.is_dir() {
+        let files = std::fs::read_dir(path).unwrap();
+        return files.map(|f| lines(&f.unwrap().path())).sum();
+    }
+    let text = std::fs::read_to_string(path).unwrap();
+    let code = |l: &&str| !l.trim().is_empty() && !l.trim().starts_with("//");
+    text.lines().filter(code).count()
+}
+
+#[test]
+fn a_family_takes_at_most_300_lines_of_shaders() {
+    for paths in [
+        &["rsm"][..],
+        &["lpv", "rsm/map.vert", "rsm/map.frag"],
+        &["ddgi"],
+        &["ssgi", "modules/screen_escape"],
+    ] {
+        let lines: usize = paths
+            .iter()
+            .map(|p| lines(&root().join("shaders").join(p)))
+            .sum();
+        println!("{paths:?}: {lines}");
+        assert!((50..=300).contains(&lines), "{paths:?}: {lines} lines");
+    }
+}
