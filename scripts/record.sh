@@ -75,14 +75,23 @@ record() {
         families) # the charts, the fronts, and pictures of two scenes too
             sweep configs/sweeps/families.ron --reference 1024
             run report "$work/families" --metric flip
-            cp "$work/families/report/fronts.csv" "$out/fronts.csv"
+            keep fronts "$(find "$work/families/points" -name '*.json' | sort | head -n 1)" \
+                "$work/families/report/fronts.csv" report "$work/families" --metric flip
             mkdir -p docs/families
-            cp "$work"/families/report/total-flip*.svg docs/families/
-            local id scene method
-            while IFS=, read -r id scene method; do
-                cp "$work/families/pictures/$id.jpg" "docs/families/$scene-$method.jpg"
-            done < <(sed -nE 's/^([0-9a-f]+),done,(corridor|street),(rays|cones|thesis|ddgi|ssgi|ssgi and rays|rsm|lpv),.*/\1,\2,\3/p' \
-                "$work/families/sweep.csv" | tr ' ' '-')
+            local chart scene method id
+            for chart in "$work"/families/report/total-flip-*.svg; do
+                scene=$(grep -m1 -oE '(corridor|door-ajar|foliage|gloss|sky-window|sponza) at [0-9]+x' "$chart" | cut -d' ' -f1) || continue
+                cp "$chart" "docs/families/$scene.svg"
+            done
+            sed -nE 's/^([0-9a-f]+),done,[^,]*(corridor|sponza)[^,]*,(rays|cones|thesis|ddgi|ssgi|ssgi and rays|rsm|lpv),.*/\1 \2 \3/p' \
+                "$work/families/sweep.csv" | while read -r id scene method; do
+                cp "$work/families/pictures/$id.jpg" "docs/families/$scene-${method// /-}.jpg"
+            done
+            ;;
+        steadiness)
+            run stability configs/stability/families.ron --spp 128 -o "$work/steadiness"
+            keep steadiness "$work/steadiness/stability.json" "$work/steadiness/stability.csv" \
+                stability configs/stability/families.ron --spp 128
             ;;
         methods) bench configs/rays.ron configs/cones.ron configs/thesis.ron configs/ddgi.ron configs/ssgi.ron \
             configs/ssgi_rays.ron configs/rsm.ron configs/lpv.ron --sizes 1920x1080 \
@@ -103,5 +112,5 @@ record() {
     esac
 }
 
-[[ $# -gt 0 ]] || set -- thesis rays pixels cells rooms lights moving actors scenes families methods exposures lamps sponza voxels
+[[ $# -gt 0 ]] || set -- thesis rays pixels cells rooms lights moving actors scenes families steadiness methods exposures lamps sponza voxels
 for name; do record "$name"; done

@@ -179,6 +179,47 @@ fn the_method_is_known_to_graphs_and_shaders_alone() {
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
+/// Words of the methods that conelab compares with voxels, by their graphs in `passes`.
+#[test]
+fn no_family_of_methods_is_known_to_the_program() {
+    let mut list = Vec::new();
+    sources(&common::root().join("src"), "", &mut list);
+    let lines = list
+        .iter()
+        .flat_map(|(file, text)| text.lines().map(move |line| (file, line.to_lowercase())));
+    const WORDS: [&str; 11] = [
+        "reflective shadow",
+        "rsm",
+        "propagation volume",
+        "lpv",
+        "spherical harmonic",
+        "ddgi",
+        "irradiance probe",
+        "probe_r",
+        "ssgi",
+        "screen space",
+        "bitmask",
+    ];
+    let is_word = |line: &str, word: &str| {
+        line.match_indices(word).any(|(at, _)| {
+            let before = line[..at].chars().next_back();
+            !before.is_some_and(char::is_alphanumeric)
+        })
+    };
+    let wrong: Vec<_> = lines
+        .filter(|(_, line)| WORDS.iter().any(|word| is_word(line, word)))
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
+    // The graphs exist, or the test would say nothing.
+    for graph in ["rsm", "lpv", "ddgi", "ssgi", "ssgi_rays"] {
+        let path = common::root()
+            .join("passes")
+            .join(graph)
+            .with_extension("ron");
+        assert!(path.is_file(), "{graph}");
+    }
+}
+
 #[test]
 fn only_what_is_drawn_knows_the_windows_library() {
     let mut list = Vec::new();

@@ -636,6 +636,11 @@ fn the_shipped_graphs_offer_at_most_46_parameters() {
         "thesis.ron",
         "warps.ron",
         "temporal.ron",
+        "ddgi.ron",
+        "ssgi.ron",
+        "ssgi_rays.ron",
+        "rsm.ron",
+        "lpv.ron",
     ] {
         let graph = workspace.load(name).unwrap().graph;
         // The probe and the slice are set in the window, by a click and by the inspector.

@@ -24,6 +24,9 @@ fn textures(group: &str) -> &'static [&'static str] {
         "Diffuse cones" | "Tracing" => &["diffuseIndirect"],
         "Rays" => &["diffuseIndirect", "specularIndirect"],
         "Specular cone" => &["specularIndirect"],
+        "Reflective shadow maps" | "Propagation" | "Probes" | "Screen space" => {
+            &["diffuseIndirect"]
+        }
         "Display" | "Probe" => &["display"],
         other => panic!("no texture is known for the group '{other}'"),
     }
@@ -257,6 +260,11 @@ fn every_option_has_a_line_of_help() {
         "warps.ron",
         "temporal.ron",
         "thesis.ron",
+        "ddgi.ron",
+        "ssgi.ron",
+        "ssgi_rays.ron",
+        "rsm.ron",
+        "lpv.ron",
         "reference.ron",
     ] {
         for param in load(&home.graph_path(graph), &home.folders())
@@ -294,6 +302,11 @@ fn every_option_builds_renders_and_changes_what_its_group_says() {
         "warps.ron",
         "temporal.ron",
         "thesis.ron",
+        "ddgi.ron",
+        "ssgi.ron",
+        "ssgi_rays.ron",
+        "rsm.ron",
+        "lpv.ron",
     ] {
         for param in params(graph) {
             // The graphs of corrected methods are made of the same parts: each parameter is tried once.

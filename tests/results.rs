@@ -481,6 +481,145 @@ fn presets() -> String {
     )
 }
 
+/// Presets of the families, as the sweep names them.
+const FAMILIES: [&str; 8] = [
+    "rays",
+    "cones",
+    "thesis",
+    "ddgi",
+    "ssgi",
+    "ssgi and rays",
+    "rsm",
+    "lpv",
+];
+
+/// The name of a scene, without its file's folder and ending.
+fn scene_name(text: &str) -> &str {
+    let name = text.rsplit('/').next().unwrap_or(text);
+    name.trim_end_matches(".ron")
+}
+
+/// Values in the order in which they first come.
+fn in_order<'r>(values: impl Iterator<Item = &'r str>) -> Vec<&'r str> {
+    let mut list: Vec<&str> = Vec::new();
+    for value in values {
+        if !list.contains(&value) {
+            list.push(value);
+        }
+    }
+    list
+}
+
+/// FLIP of each family's preset in every scene, and what the reference's noise alone has.
+fn families() -> String {
+    let record = record("families");
+    let scenes = in_order(record.lines.iter().map(|l| l["scene"].as_str()));
+    let cell = |method: &str, scene: &str, column: &str| {
+        let is = |l: &&BTreeMap<String, String>| l["method"] == method && l["scene"] == scene;
+        let line = record.lines.iter().find(is).unwrap();
+        format!("{:.3}", number(line, column))
+    };
+    let row = |title: &str, method: &str, column: &str| -> Vec<String> {
+        let cells = scenes.iter().map(|scene| cell(method, scene, column));
+        std::iter::once(title.into()).chain(cells).collect()
+    };
+    let mut lines: Vec<Vec<String>> = FAMILIES
+        .iter()
+        .map(|name| row(name, name, "total flip"))
+        .collect();
+    lines.push(row("noise of the reference", "rays", "total flip noise"));
+    let mut head = vec![""];
+    head.extend(scenes.iter().map(|s| scene_name(s)));
+    format!("*{}*\n\n{}", record.said, table(&head, &lines))
+}
+
+/// What families reach in equal time, and what an equal error costs them.
+fn fronts() -> String {
+    const ASKED: [(&str, &str, &str); 2] = [
+        ("flip within ms", "2", "FLIP within 2 ms"),
+        ("ms within flip", "0.1", "ms within a FLIP of 0.1"),
+    ];
+    let record = record("fronts");
+    let subjects = in_order(record.lines.iter().map(|l| l["subject"].as_str()));
+    let names = in_order(record.lines.iter().map(|l| l["family"].as_str()));
+    let mut out = format!("*{}*\n", record.said);
+    for (asked, limit, title) in ASKED {
+        let cell = |family: &str, subject: &str| {
+            let is = |l: &&BTreeMap<String, String>| {
+                l["family"] == family
+                    && l["subject"] == subject
+                    && l["asked"] == asked
+                    && l["limit"] == limit
+            };
+            let found = record.lines.iter().find(is).map_or("", |l| &l["value"]);
+            found
+                .parse::<f64>()
+                .map_or("-".into(), |v| format!("{v:.2}"))
+        };
+        let line = |family: &&str| -> Vec<String> {
+            let cells = subjects.iter().map(|subject| cell(family, subject));
+            std::iter::once((*family).into()).chain(cells).collect()
+        };
+        let lines: Vec<Vec<String>> = names.iter().map(line).collect();
+        let mut head = vec![title];
+        head.extend(subjects.iter().map(|s| s.split(' ').next().unwrap()));
+        let _ = write!(out, "\n{}", table(&head, &lines));
+    }
+    out
+}
+
+/// Times of a frame of the families' presets.
+fn methods() -> String {
+    let record = record("methods");
+    let totals = || record.lines.iter().filter(|l| l["kind"] == "total");
+    let scenes = in_order(totals().map(|l| l["scene"].as_str()));
+    let names = in_order(totals().map(|l| l["experiment"].as_str()));
+    let cell = |name: &str, scene: &str| {
+        let is = |l: &&BTreeMap<String, String>| l["experiment"] == name && l["scene"] == scene;
+        let line = totals().find(is).unwrap();
+        format!(
+            "{:.2} ({:.2})",
+            number(line, "median ms"),
+            number(line, "p95 ms")
+        )
+    };
+    let line = |name: &&str| -> Vec<String> {
+        let cells = scenes.iter().map(|scene| cell(name, scene));
+        std::iter::once((*name).into()).chain(cells).collect()
+    };
+    let lines: Vec<Vec<String>> = names.iter().map(line).collect();
+    let mut head = vec!["ms, median (p95)"];
+    head.extend(scenes.iter().map(|s| scene_name(s)));
+    format!("*{}*\n\n{}", record.said, table(&head, &lines))
+}
+
+/// Error of changes of each family while something moves, and frames until a switched lamp is there.
+fn steadiness() -> String {
+    let record = record("steadiness");
+    let cases = in_order(record.lines.iter().map(|l| l["case"].as_str()));
+    let names = in_order(record.lines.iter().map(|l| l["method"].as_str()));
+    let of = |name: &str, case: &str| {
+        let is = |l: &&BTreeMap<String, String>| l["method"] == name && l["case"] == case;
+        record.lines.iter().find(is).unwrap()
+    };
+    let line = |name: &&str| -> Vec<String> {
+        let changes = cases
+            .iter()
+            .map(|case| format!("{:.2}", 1000.0 * number(of(name, case), "diffuse E_t")));
+        let late = &of(name, "switch")["diffuse convergence frames"];
+        let late = if late.is_empty() { "never" } else { late }.to_string();
+        std::iter::once((*name).into())
+            .chain(changes)
+            .chain([late])
+            .collect()
+    };
+    let lines: Vec<Vec<String>> = names.iter().map(line).collect();
+    let mut head = vec!["1000 E_t of diffuse light"];
+    head.extend(&cases);
+    head.push("frames to converge after the switch");
+    format!("*{}*\n\n{}", record.said, table(&head, &lines))
+}
+
 fn block(name: &str) -> String {
     match name {
         "moving" | "actors" => moving(name),
@@ -489,6 +628,10 @@ fn block(name: &str) -> String {
         "exposures" => exposures(),
         "voxels" => voxels(),
         "presets" => presets(),
+        "families" => families(),
+        "fronts" => fronts(),
+        "methods" => methods(),
+        "steadiness" => steadiness(),
         times_of => times(times_of),
     }
 }
@@ -557,32 +700,34 @@ fn figures_of_the_readme_are_those_recorded() {
 
 #[test]
 fn tables_say_what_was_recorded() {
-    let path = root().join("docs/results.md");
-    let text = std::fs::read_to_string(&path).unwrap();
-    let (mut out, mut skips, mut blocks) = (String::new(), false, 0);
-    for line in text.lines() {
-        if line == "<!-- end -->" {
-            skips = false;
+    for (page, least) in [("results.md", 8), ("families.md", 4)] {
+        let path = root().join("docs").join(page);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let (mut out, mut skips, mut blocks) = (String::new(), false, 0);
+        for line in text.lines() {
+            if line == "<!-- end -->" {
+                skips = false;
+            }
+            if !skips {
+                let _ = writeln!(out, "{line}");
+            }
+            if let Some(name) = line
+                .strip_prefix("<!-- recorded: ")
+                .and_then(|l| l.strip_suffix(" -->"))
+            {
+                let _ = write!(out, "\n{}\n", block(name));
+                (skips, blocks) = (true, blocks + 1);
+            }
         }
-        if !skips {
-            let _ = writeln!(out, "{line}");
+        assert!(!skips, "a table of {page} has no end");
+        assert!(blocks >= least, "docs/{page} has {blocks} tables");
+        if std::env::var_os("CONELAB_BLESS").is_some() {
+            std::fs::write(&path, out).unwrap();
+        } else {
+            assert!(
+                out == text,
+                "docs/{page} does not say what docs/recorded holds: CONELAB_BLESS=1 writes it anew"
+            );
         }
-        if let Some(name) = line
-            .strip_prefix("<!-- recorded: ")
-            .and_then(|l| l.strip_suffix(" -->"))
-        {
-            let _ = write!(out, "\n{}\n", block(name));
-            (skips, blocks) = (true, blocks + 1);
-        }
-    }
-    assert!(!skips, "a table has no end");
-    assert!(blocks > 7, "docs/results.md has {blocks} tables");
-    if std::env::var_os("CONELAB_BLESS").is_some() {
-        std::fs::write(&path, out).unwrap();
-    } else {
-        assert!(
-            out == text,
-            "docs/results.md does not say what docs/recorded holds: CONELAB_BLESS=1 writes it anew"
-        );
     }
 }

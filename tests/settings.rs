@@ -18,12 +18,17 @@ use mutate::Random;
 /// Where nobody says how many.
 const SETTINGS: usize = 10;
 
-const GRAPHS: [&str; 5] = [
+const GRAPHS: [&str; 10] = [
     "rays.ron",
     "cones.ron",
     "warps.ron",
     "temporal.ron",
     "thesis.ron",
+    "ddgi.ron",
+    "ssgi.ron",
+    "ssgi_rays.ron",
+    "rsm.ron",
+    "lpv.ron",
 ];
 const SCENES: [&str; 4] = [
     "cornell",
@@ -41,6 +46,9 @@ fn most(name: &str, highest: f64) -> f64 {
         "voxel_dim" => 64.0,
         "shadow_dim" => 512.0,
         "exact_rays" | "bounce_directions" | "pixel_rays" => 16.0,
+        "rsm_samples" | "rsm_dim" => 512.0,
+        "probe_rows" | "ssgi_slices" | "lpv_steps" => 12.0,
+        "lpv_dim" | "ssgi_steps" => 32.0,
         "diffuse_steps" | "specular_steps" => 128.0,
         "fragment_capacity" => 4e6,
         "voxel_capacity" => 1e6,

@@ -11,7 +11,7 @@ void addBlocker(vec3 p, vec3 n, float area, int source) {
         ivec3 corner = ivec3(round((p - gridCorner(grid)) / cell));
         if (any(greaterThan(uvec3(corner), uvec3(params.lpv_dim)))) continue;
         ivec4 add = ivec4(round(cosineLobe(n) * min(area / (cell * cell), 64.0) * BLOCKER_UNIT));
-        uint first = 8u * cornerIndex(corner, grid) + 4u * uint(source);
+        uint first = 8u * indexIn(params.lpv_dim + 1, corner, grid) + 4u * uint(source);
         for (int i = 0; i < 4; i++)
             if (add[i] != 0) atomicAdd(lpvBlockers.coefficients[first + i], add[i]);
     }

@@ -27,17 +27,9 @@ bool inGrid(ivec3 cell) {
     return all(lessThan(uvec3(cell), uvec3(params.lpv_dim)));
 }
 
-uint cellIndex(ivec3 cell, int grid) {
-    uvec3 c = uvec3(cell);
-    uint n = uint(params.lpv_dim);
-    return c.x + n * (c.y + n * (c.z + n * uint(grid)));
-}
-
-// Blockers lie at the corners of cells.
-uint cornerIndex(ivec3 corner, int grid) {
-    uvec3 c = uvec3(corner);
-    uint n = uint(params.lpv_dim) + 1u;
-    return c.x + n * (c.y + n * (c.z + n * uint(grid)));
+// Index in a buffer of grids with so many elements along an edge: lpv_dim cells, or one more corner.
+uint indexIn(int edge, ivec3 at, int grid) {
+    return uint(at.x + edge * (at.y + edge * (at.z + edge * grid)));
 }
 
 vec4 harmonics(vec3 d) {

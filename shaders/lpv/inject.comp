@@ -55,7 +55,7 @@ void main() {
         vec4 lobe = cosineLobe(n) / (PI * cell * cell);
         for (int i = 0; i < 12; i++) {
             float value = flux[i / 4] * lobe[i % 4];
-            if (value != 0.0) addLight(12u * cellIndex(at, grid) + uint(i), value);
+            if (value != 0.0) addLight(12u * indexIn(params.lpv_dim, at, grid) + uint(i), value);
         }
     }
 }

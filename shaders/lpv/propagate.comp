@@ -28,7 +28,7 @@ vec4 blockersAt(ivec3 cell, ivec3 d, int grid) {
         ivec3 corner = first + (axis.x == 1 ? ivec3(0, i & 1, i >> 1)
             : axis.y == 1 ? ivec3(i & 1, 0, i >> 1)
             : ivec3(i & 1, i >> 1, 0));
-        uint at = 8u * cornerIndex(corner, grid);
+        uint at = 8u * indexIn(params.lpv_dim + 1, corner, grid);
         uint seen = lpvBlockers.coefficients[at] >= lpvBlockers.coefficients[at + 4] ? at : at + 4;
         for (int k = 0; k < 4; k++) sum[k] += float(lpvBlockers.coefficients[seen + k]);
     }
@@ -46,7 +46,7 @@ void main() {
         vec3 d = axisDirection(i);
         ivec3 neighbour = cell - ivec3(d);
         if (!inGrid(neighbour)) continue;
-        uint at = 3u * (from + cellIndex(neighbour, grid));
+        uint at = 3u * (from + indexIn(params.lpv_dim, neighbour, grid));
         mat3x4 sent = mat3x4(lpvWaves.coefficients[at], lpvWaves.coefficients[at + 1],
             lpvWaves.coefficients[at + 2]);
         if (sent == mat3x4(0.0)) continue;
@@ -61,7 +61,7 @@ void main() {
             light += mat3x4(flux.r * lobe, flux.g * lobe, flux.b * lobe);
         }
     }
-    uint own = 3u * cellIndex(cell, grid);
+    uint own = 3u * indexIn(params.lpv_dim, cell, grid);
     for (int channel = 0; channel < 3; channel++) {
         lpvWaves.coefficients[3u * to + own + channel] = light[channel];
         lpvSums.coefficients[own + channel] += light[channel];

@@ -14,7 +14,7 @@ uniform writeonly image3D lpvBlue;
 void main() {
     ivec3 stored = ivec3(gl_GlobalInvocationID);
     if (any(greaterThanEqual(stored.xy, ivec2(params.lpv_dim)))) return;
-    uint own = 3u * cellIndex(stored, 0);
+    uint own = 3u * indexIn(params.lpv_dim, stored, 0);
     imageStore(lpvRed, stored, lpvSums.coefficients[own]);
     imageStore(lpvGreen, stored, lpvSums.coefficients[own + 1]);
     imageStore(lpvBlue, stored, lpvSums.coefficients[own + 2]);

@@ -10,8 +10,8 @@
 #include "ssgi/slice.glsl"
 
 // Light of a direction that meets nothing in the picture; `spread`: solid angle that it represents [sr].
-vec3 escapedLight(GBufferSurface seen, vec3 d, float spread, inout float open);
-#include "modules/screen_escape.glsl"
+vec3 missedLight(GBufferSurface seen, vec3 d, float spread, inout float open);
+#include "modules/screen_miss.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -83,7 +83,7 @@ void main() {
             vec3 d = directionAt(s, sector);
             if (dot(d, seen.face) > 0.0) {
                 float spread = PI * share / float(params.ssgi_slices);
-                light += share * escapedLight(seen, d, spread, seen_through);
+                light += share * missedLight(seen, d, spread, seen_through);
                 open += s.weight * share * seen_through;
             }
         }

@@ -1,6 +1,6 @@
 // Directions that meet nothing in the picture see the sky.
 #include "lights/sky.glsl"
 
-vec3 escapedLight(GBufferSurface seen, vec3 d, float spread, inout float open) {
+vec3 missedLight(GBufferSurface seen, vec3 d, float spread, inout float open) {
     return skyRadiance(d, spread);
 }

@@ -3,7 +3,7 @@
 #include "surfels/trace.glsl"
 #include "lights/sky.glsl"
 
-vec3 escapedLight(GBufferSurface seen, vec3 d, float spread, inout float open) {
+vec3 missedLight(GBufferSurface seen, vec3 d, float spread, inout float open) {
     ConeOrigin o = coneOrigin(seen.position, seen.face, seen.surface.normal);
     SurfelHit met = traceSurfels(o, d, 1e30);
     if (met.light.a > 0.0) open = 0.0;

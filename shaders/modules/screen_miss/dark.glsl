@@ -1,4 +1,4 @@
 // Directions that meet nothing in the picture are dark.
-vec3 escapedLight(GBufferSurface seen, vec3 d, float spread, inout float open) {
+vec3 missedLight(GBufferSurface seen, vec3 d, float spread, inout float open) {
     return vec3(0.0);
 }
