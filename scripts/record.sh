@@ -80,7 +80,7 @@ record() {
             mkdir -p docs/families
             local chart scene method id
             for chart in "$work"/families/report/total-flip-*.svg; do
-                scene=$(grep -m1 -oE '(corridor|door-ajar|foliage|gloss|sky-window|sponza) at [0-9]+x' "$chart" | cut -d' ' -f1) || continue
+                scene=$(grep -m1 -oE '(corridor|door-ajar|foliage|sky-window|sponza) at [0-9]+x' "$chart" | cut -d' ' -f1) || continue
                 cp "$chart" "docs/families/$scene.svg"
             done
             sed -nE 's/^([0-9a-f]+),done,[^,]*(corridor|sponza)[^,]*,(rays|cones|thesis|ddgi|ssgi|ssgi and rays|rsm|lpv),.*/\1 \2 \3/p' \

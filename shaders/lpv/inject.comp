@@ -39,12 +39,12 @@ void main() {
     vec2 clip = (vec2(texel.xy) + 0.5) / float(params.rsm_dim) * 2.0 - 1.0;
     vec4 h = view.inverse_view_projection * vec4(clip, depth, 1.0);
     vec3 p = h.xyz / h.w, n = fromOctahedral(texelFetch(rsmNormal, texel, 0).rg);
-    float across = view.texel_size_and_depth.x / float(params.rsm_dim);
-    vec3 flux = texelFetch(rsmFlux, texel, 0).rgb * across * across;
+    float across = mapArea(view) / float(params.rsm_dim * params.rsm_dim);
+    vec3 flux = texelFetch(rsmFlux, texel, 0).rgb * across;
     if (LPV_BLOCKING == LPV_BLOCKING_ON) {
         vec3 off = p - light.position;
         // Of the texel at the surface, across the ray; the view's corners are a little too wide here.
-        float area = across * across * (view.texel_size_and_depth.z > 0.0 ? dot(off, off) : 1.0);
+        float area = across * (view.texel_size_and_depth.z > 0.0 ? dot(off, off) : 1.0);
         addBlocker(p, n, area / max(dot(n, incidentLight(light, p).to_light), 0.1), 0);
     }
     for (int grid = 0; grid < params.lpv_cascades; grid++) {

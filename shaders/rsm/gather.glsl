@@ -21,7 +21,7 @@ vec3 fromTexel(uint view, vec2 at, float share, vec3 p, vec3 n, vec3 lamp) {
     vec2 clip = (vec2(texel.xy) + 0.5) / float(params.rsm_dim) * 2.0 - 1.0;
     vec4 h = v.inverse_view_projection * vec4(clip, texelFetch(rsmDepth, texel, 0).r, 1.0);
     vec3 q = h.xyz / h.w, off = p - q;
-    float area = v.texel_size_and_depth.x * v.texel_size_and_depth.x * share; // of the map
+    float area = mapArea(v) * share;
     float emits = dot(fromOctahedral(texelFetch(rsmNormal, texel, 0).rg), off), receives = -dot(n, off);
     if (emits <= 0.0 || receives <= 0.0) return vec3(0.0);
     // A disc of the point's area instead of the point, so that light stays finite nearby.
