@@ -446,6 +446,58 @@ fn light_propagates_as_in_a_simulation_of_its_own() {
     );
 }
 
+/// Parameters of the families, another value than the default, and a scene where it matters.
+const OTHERS: [(&str, &str, &str, &str); 20] = [
+    ("rsm", "rsm_dim", "128", "cornell"),
+    ("rsm", "rsm_samples", "32", "cornell"),
+    ("rsm", "rsm_radius", "0.1", "cornell"),
+    ("rsm", "rsm_spacing", "1", "cornell"),
+    ("rsm", "reflections", "none", "cornell"),
+    ("lpv", "lpv_dim", "16", "cornell"),
+    ("lpv", "lpv_cascades", "2", "cornell"),
+    ("lpv", "lpv_steps", "4", "cornell"),
+    ("lpv", "lpv_blocking", "off", "cornell"),
+    ("ddgi", "probe_rows", "4", "cornell"),
+    ("ddgi", "probe_rays", "32", "cornell"),
+    ("ddgi", "probe_hysteresis", "0.0", "cornell"),
+    ("ddgi", "probe_bias", "1.0", "cornell"),
+    ("ddgi", "probe_moves", "off", "cornell"),
+    ("ssgi", "ssgi_slices", "1", "cornell"),
+    ("ssgi", "ssgi_steps", "4", "cornell"),
+    ("ssgi", "ssgi_radius", "0.2", "cornell"),
+    ("ssgi", "ssgi_thickness", "0.01", "cornell"),
+    ("ssgi", "screen_miss", "dark", "sky-window"),
+    ("ssgi_rays", "ssgi_thickness", "0.2", "cornell"),
+];
+
+/// tests/options.rs renders one frame, in which most families have no light yet.
+#[test]
+fn every_parameter_of_a_family_changes_its_light() {
+    let lab = lab(root());
+    let light = |family: &str, set: &[(&str, &str)], scene: &str| {
+        let small: &[(&str, &str)] = match family {
+            "ddgi" => &[("voxel_dim", "32"), ("probe_rows", "6")],
+            "ssgi_rays" => &[("voxel_dim", "32")],
+            _ => &[],
+        };
+        let e = experiment(family, &[small, set].concat(), scene, (40, 30));
+        let mut session = prepare(&lab, &e, &["radiance"]);
+        for _ in 0..4 {
+            session.frame(0.0).unwrap();
+        }
+        session.finish().unwrap();
+        session.texels("radiance", 0, 0).unwrap().bytes
+    };
+    let mut same = Vec::new();
+    for (family, name, value, scene) in OTHERS {
+        if light(family, &[], scene) == light(family, &[(name, value)], scene) {
+            same.push((family, name));
+        }
+    }
+    assert!(same.is_empty(), "{same:?}");
+    assert_clean(&lab);
+}
+
 /// Lines of code of a shader, or of all in a folder: neither blank nor a comment.
 fn lines(path: &Path) -> usize {
     if path.is_dir() {

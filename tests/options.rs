@@ -24,9 +24,6 @@ fn textures(group: &str) -> &'static [&'static str] {
         "Diffuse cones" | "Tracing" => &["diffuseIndirect"],
         "Rays" => &["diffuseIndirect", "specularIndirect"],
         "Specular cone" => &["specularIndirect"],
-        "Reflective shadow maps" | "Propagation" | "Probes" | "Screen space" => {
-            &["diffuseIndirect"]
-        }
         "Display" | "Probe" => &["display"],
         other => panic!("no texture is known for the group '{other}'"),
     }
@@ -99,11 +96,30 @@ const SAME_PICTURE: [&str; 6] = [
 ];
 
 /// What two frames of a still picture do not show, and the test that does.
-const ELSEWHERE: [(&str, &str); 4] = [
+const ELSEWHERE: [(&str, &str); 23] = [
     ("accumulation_rounds", "turns.rs"),
     ("bounce_frames", "turns.rs"),
     ("gather_rest", "turns.rs"),
     ("temporal_cut", "volume.rs"),
+    ("rsm_dim", "families.rs"),
+    ("rsm_samples", "families.rs"),
+    ("rsm_radius", "families.rs"),
+    ("rsm_spacing", "families.rs"),
+    ("reflections", "families.rs"),
+    ("lpv_dim", "families.rs"),
+    ("lpv_cascades", "families.rs"),
+    ("lpv_steps", "families.rs"),
+    ("lpv_blocking", "families.rs"),
+    ("probe_rows", "families.rs"),
+    ("probe_rays", "families.rs"),
+    ("probe_hysteresis", "families.rs"),
+    ("probe_bias", "families.rs"),
+    ("probe_moves", "families.rs"),
+    ("ssgi_slices", "families.rs"),
+    ("ssgi_steps", "families.rs"),
+    ("ssgi_radius", "families.rs"),
+    ("ssgi_thickness", "families.rs"),
+    ("screen_miss", "families.rs"),
 ];
 
 /// What depends on the order in which fragments come, which no two frames of a GPU share.
@@ -146,7 +162,11 @@ fn run(
     e.graph = graph.into();
     e.scene = scene.to_string_lossy().into_owned();
     e.size = (32, 24);
-    for (name, value) in BASE.iter().chain(settings) {
+    let params = load(&lab.home.graph_path(graph), &lab.home.folders())
+        .unwrap()
+        .params;
+    let base = BASE.iter().filter(|(name, _)| params.index(name).is_some());
+    for (name, value) in base.chain(settings) {
         e.params.push((
             Loc {
                 value: (*name).to_string(),

@@ -25,7 +25,7 @@ void main() {
     diffuse.albedo = min(diffuse.albedo + lobeReflectance(diffuse, seen.to_viewer), 1.0);
     diffuse.f0 = vec3(0.0);
     diffuse.f90 = 0.0;
-    vec3 light = seen.emission + diffuse.albedo * texelFetch(gatheredDiffuse, pixel, 0).rgb
+    vec3 light = float(params.screen_emits) * seen.emission + diffuse.albedo * texelFetch(gatheredDiffuse, pixel, 0).rgb
         + directLight(diffuse, seen.position, seen.face, seen.to_viewer);
     imageStore(screenLight, pixel, vec4(min(light, 60000.0), distance(seen.position, camera.position)));
 }

@@ -11,6 +11,8 @@
 
 // Light of a direction that meets nothing in the picture; `spread`: solid angle that it represents [sr].
 vec3 missedLight(GBufferSurface seen, vec3 d, float spread, inout float open);
+// Light of emitter samples, if the picture's light does not include emission.
+vec3 emitterLight(GBufferSurface seen, uint number);
 #include "modules/screen_miss.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -87,7 +89,7 @@ void main() {
                 open += s.weight * share * seen_through;
             }
         }
-        sum += s.weight * light;
+        sum += s.weight * light + emitterLight(seen, number);
     }
     imageStore(screenGathered, pixel, vec4(sum, open) / float(params.ssgi_slices));
 }

@@ -4,3 +4,7 @@
 vec3 missedLight(GBufferSurface seen, vec3 d, float spread, inout float open) {
     return skyRadiance(d, spread);
 }
+
+vec3 emitterLight(GBufferSurface seen, uint number) {
+    return vec3(0.0);
+}

@@ -61,6 +61,8 @@ pub struct Chart {
     /// Number of the points' colours, by point, and the colours.
     pub groups: Vec<usize>,
     pub colors: Vec<String>,
+    /// Places of the points with a bar, in the order of the bars.
+    pub bars: Vec<usize>,
     pub svg: String,
 }
 

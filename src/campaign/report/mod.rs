@@ -86,6 +86,7 @@ fn charts(data: &Data, metrics: &[&'static Metric]) -> Result<Vec<Chart>, LabErr
                     metric,
                     points,
                     groups,
+                    bars: scatter::bars(&dots).map(|(i, _)| i).collect(),
                     colors: (0..names.len()).map(|i| hex(color(i))).collect(),
                     svg,
                 });

@@ -203,6 +203,9 @@ function update() {
       circle.setAttribute("stroke", hollow === "yes" ? ink : "none");
       at.set(index, [Number(circle.getAttribute("cx")), Number(circle.getAttribute("cy"))]);
     });
+    figure.querySelectorAll(`polyline[opacity='${data.bar_opacity}']`).forEach((bar, i) => {
+      bar.style.display = kept(data.dots[chart.points[chart.bars[i]]]) ? "" : "none";
+    });
     // The front of a colour is the first line that has it.
     chart.colors.forEach((color, group) => {
       const line = figure.querySelector(`polyline[stroke='${chart.colors.length < 2 ? data.front : color}']`);

@@ -2,7 +2,7 @@
 
 use super::data::{Chart, Data, Dot};
 use super::equal::Equal;
-use super::scatter::FRONT;
+use super::scatter::{BAR_OPACITY, FRONT};
 use super::scenes::Scenes;
 use crate::campaign::charts::{COLORS, hex};
 use crate::campaign::page::{page as whole_page, url};
@@ -32,6 +32,7 @@ struct PageChart<'a> {
     points: &'a [usize],
     groups: &'a [usize],
     colors: &'a [String],
+    bars: &'a [usize],
 }
 
 /// A metric: key, title, and whether it is a ratio.
@@ -45,6 +46,7 @@ struct PageData<'a> {
     parts: &'a [String],
     colors: Vec<String>,
     front: String,
+    bar_opacity: String,
     metrics: Vec<PageMetric>,
     charts: Vec<PageChart<'a>>,
     dots: Vec<PageDot<'a>>,
@@ -65,6 +67,7 @@ fn page_data<'a>(data: &'a Data, charts: &'a [Chart]) -> PageData<'a> {
         points: &c.points,
         groups: &c.groups,
         colors: &c.colors,
+        bars: &c.bars,
     });
     PageData {
         names: &data.names,
@@ -76,6 +79,7 @@ fn page_data<'a>(data: &'a Data, charts: &'a [Chart]) -> PageData<'a> {
             .map(|c| format!("rgb({},{},{})", c.0, c.1, c.2))
             .collect(),
         front: hex(FRONT),
+        bar_opacity: BAR_OPACITY.to_string(),
         metrics: METRICS
             .iter()
             .map(|m| (m.key, m.title, m.best == Best::One))

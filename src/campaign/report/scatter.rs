@@ -10,12 +10,21 @@ const SIZE: (u32, u32) = (900, 560);
 /// Colour of the front of a single experiment.
 pub const FRONT: RGBColor = RGBColor(200, 60, 40);
 
+/// Opacity of bars; no other line has it.
+pub const BAR_OPACITY: f64 = 0.4;
+
 /// Experiments of dots in the order of their colours.
 pub fn groups(dots: &[Scored]) -> Vec<&str> {
     let mut names: Vec<&str> = dots.iter().map(|d| d.experiment.as_str()).collect();
     names.sort_unstable();
     names.dedup();
     names
+}
+
+/// Places of the dots with a bar, and what the bar shows.
+pub fn bars(dots: &[Scored]) -> impl Iterator<Item = (usize, f64)> {
+    let noise = |(i, d): (usize, &Scored)| d.noise.filter(|n| *n > 0.0).map(|n| (i, n));
+    dots.iter().enumerate().filter_map(noise)
 }
 
 /// The chart as SVG. It has one circle per dot, in order, one colour per experiment, and before all
@@ -66,14 +75,11 @@ fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), F
         let line = PathElement::new(steps, color.stroke_width(1));
         chart.draw_series(std::iter::once(line))?;
     }
-    chart.draw_series(dots.iter().filter_map(|d| {
-        let (x, y) = place(d);
-        let noise = d.noise.filter(|n| *n > 0.0)?;
+    chart.draw_series(bars(dots).map(|(i, noise)| {
+        let (x, y) = place(&dots[i]);
         let ends = vec![(x, (y - noise).max(ys.0)), (x, (y + noise).min(ys.1))];
-        Some(PathElement::new(
-            ends,
-            color_of(&d.experiment).mix(0.4).stroke_width(1),
-        ))
+        let color = color_of(&dots[i].experiment).mix(BAR_OPACITY);
+        PathElement::new(ends, color.stroke_width(1))
     }))?;
     chart.draw_series(dots.iter().enumerate().map(|(i, d)| {
         let on_front = on_fronts.contains(&i);
