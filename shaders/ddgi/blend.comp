@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Adds a frame's rays to the two maps of a probe (Majercik et al. 2019, Section 4), borders included.
+// Adds a frame's rays to the two maps of a probe (Majercik et al. 2019), borders included.
 // Light is weighted by the cosine, distance by its 50th power.
 #include "params.glsl"
 #include "ddgi/probes.glsl"

@@ -1,4 +1,4 @@
-// Light of a surface from the eight probes around it (Majercik et al. 2019, Section 5): probes behind the
+// Light of a surface from the eight probes around it (Majercik et al. 2019): probes behind the
 // surface, and those that by their map of distances do not see it, count less.
 #ifndef DDGI_LOOKUP_GLSL
 #define DDGI_LOOKUP_GLSL

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Moves probes out of walls and away from surfaces, and turns off those that stay inside or that no
 // surface needs (Majercik et al. 2021, "Scaling Probe-Based Real-Time Dynamic Global Illumination for
-// Production", Section 4).
+// Production").
 #include "params.glsl"
 #include "ddgi/probes.glsl"
 #include "ddgi/directions.glsl"

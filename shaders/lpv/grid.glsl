@@ -27,7 +27,7 @@ bool inGrid(ivec3 cell) {
     return all(lessThan(uvec3(cell), uvec3(params.lpv_dim)));
 }
 
-// Index in a buffer of grids with so many elements along an edge: lpv_dim cells, or one more corner.
+// Index in a buffer of grids with `edge` elements along an edge: lpv_dim cells, or one more corner.
 uint indexIn(int edge, ivec3 at, int grid) {
     return uint(at.x + edge * (at.y + edge * (at.z + edge * grid)));
 }

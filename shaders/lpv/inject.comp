@@ -43,7 +43,7 @@ void main() {
     vec3 flux = texelFetch(rsmFlux, texel, 0).rgb * across;
     if (LPV_BLOCKING == LPV_BLOCKING_ON) {
         vec3 off = p - light.position;
-        // Of the texel at the surface, across the ray; the view's corners are a little too wide here.
+        // Area of the texel across the ray. It is a little too large at the corners of the view.
         float area = across * (view.texel_size_and_depth.z > 0.0 ? dot(off, off) : 1.0);
         addBlocker(p, n, area / max(dot(n, incidentLight(light, p).to_light), 0.1), 0);
     }

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Each cell takes what its six neighbours send through its faces, as flux that leaves it at these faces
-// again (Kaplanyan and Dachsbacher 2010, Section 4.2). Their flux lacks the factor of 4 pi that makes it
+// again (Kaplanyan and Dachsbacher 2010). Their flux lacks the factor of 4 pi that makes it
 // equal to what the neighbours lose.
 #include "params.glsl"
 #include "lpv/grid.glsl"

@@ -1,5 +1,5 @@
-// Light that points of the reflective shadow maps send to a surface (Dachsbacher and Stamminger 2005,
-// Equation 1), in units of radiance: the paper's sum lacks 1 / pi, and its weights leave the scale open.
+// Light that points of the reflective shadow maps send to a surface (Dachsbacher and Stamminger 2005), in
+// units of radiance: the paper's sum lacks 1 / pi, and its weights leave the scale open.
 #ifndef RSM_GATHER_GLSL
 #define RSM_GATHER_GLSL
 #include "common/scene.glsl"
