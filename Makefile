@@ -11,7 +11,7 @@ ARGS ?=
 # Run only the tests whose names hold this, for example: make test TESTS=voxel
 TESTS ?=
 # Suites that take a minute and more; what takes a second at most; and all others (files of tests/).
-SLOW := area_lights chart converge emitters energy furnace incremental normal_maps options readme reference runs scales settings stability sweep turns volume window
+SLOW := area_lights chart converge emitters energy families furnace incremental normal_maps options readme reference runs scales settings stability sweep turns tutorial volume window
 QUICK := effects floors graph_errors hostile metrics results structure
 SUITES := $(filter-out $(SLOW),$(basename $(notdir $(wildcard tests/*.rs))))
 RUN := cargo test --release --locked --no-fail-fast
