@@ -135,7 +135,8 @@ const CORNER: &str = "(materials: { \"floor\": (base_color: (0.8, 0.8, 0.8, 1.0)
               Quad(material: \"wall\", corners: ((-2, 0, 0), (2, 0, 0), (2, 2, 0), (-2, 2, 0)))] },
           lights: [Directional(name: \"sun\", color: (3, 3, 3), direction: (0, -1, 0), shadow: true)],
           sky: (0, 0, 0),
-          cameras: { \"default\": (eye: (0, 1.2, 5), target: (0, 1.2, 0), fov_y: 40) })";
+          cameras: { \"default\": (eye: (0, 1.2, 5), target: (0, 1.2, 0), fov_y: 40),
+                     \"above\": (eye: (0, 4, 6), target: (0, 0.4, 1), fov_y: 45) })";
 
 /// R1. A floor of albedo 0.8 under a sun at the zenith lights a dark wall, which the sun does not reach: its light is the
 /// floor's radiance times the share of its hemisphere that the floor covers. The view is square to the wall.
@@ -188,6 +189,27 @@ fn corner() {
         "rsm, whole map",
         "diffuse / exact",
         found,
+        (0.95, 1.05),
+    ));
+    // The camera sees all of the floor, and the wall's light is that of the reference.
+    let all = [("ssgi_slices", "16"), ("ssgi_steps", "128")];
+    let mut above = experiment("ssgi", &all, &file, size);
+    above.camera = CameraChoice::Named("above".into());
+    let expected = reference(&lab, &above, 1, 256);
+    let light = &converged(&lab, &above)["diffuse"];
+    let (mut found, mut exact) = (0.0, 0.0);
+    for (i, texel) in expected["diffuse"].rgb.iter().enumerate() {
+        let is_wall = expected["direct"].rgb[i][1] == 0.0 && texel[1] > 0.0;
+        if is_wall {
+            found += f64::from(light.rgb[i][1]);
+            exact += f64::from(texel[1]);
+        }
+    }
+    let title = "ssgi, the floor in view";
+    list.push(row(
+        title,
+        "diffuse / reference",
+        found / exact,
         (0.95, 1.05),
     ));
     check("families.md", "R1 corner", &list);
