@@ -20,7 +20,7 @@ float visibleFrom(uint probe, vec3 off) {
 
 // Mean radiance over the hemisphere of n, and openness. v: to the viewer.
 vec4 probeLightAt(vec3 p, vec3 n, vec3 v) {
-    vec3 from = p + 0.75 * params.probe_spacing * params.probe_bias * (0.2 * n + 0.8 * v);
+    vec3 from = p + lookupOffset() * (0.2 * n + 0.8 * v);
     ivec3 last = probeGrid() - 1, first = clamp(ivec3(floor(inProbes(from))), ivec3(0), max(last - 1, 0));
     vec3 part = clamp(inProbes(from) - vec3(first), 0.0, 1.0);
     vec4 sum = vec4(0.0);

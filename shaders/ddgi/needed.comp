@@ -16,7 +16,7 @@ void main() {
     ivec3 cell = cellOfSurfel(surfel);
     VolumeMap map = volume.maps[cascadeOf(cell)];
     vec3 p = volumeToWorld(map, cellCentre(cell));
-    vec3 reach = cellSize(map, p) + 0.75 * params.probe_bias * params.probe_spacing;
+    vec3 reach = cellSize(map, p) + lookupOffset();
     ivec3 last = probeGrid() - 1;
     ivec3 low = clamp(ivec3(floor(inProbes(p - reach))), ivec3(0), last),
         high = clamp(ivec3(floor(inProbes(p + reach))) + 1, ivec3(0), last);

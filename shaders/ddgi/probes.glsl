@@ -50,6 +50,11 @@ vec2 placeInAtlas(uint probe, int edge, vec3 d) {
 
 const int LIGHT_EDGE = 8, DEPTH_EDGE = 16;
 
+// Distance from a surface to the point that looks up probes [m].
+float lookupOffset() {
+    return 0.75 * params.probe_spacing * params.probe_bias;
+}
+
 // Farther surfaces do not matter to the visibility of points between neighbouring probes [m].
 float depthLimit() {
     return 1.5 * sqrt(3.0) * params.probe_spacing;

@@ -83,6 +83,20 @@ pub struct Scored {
     pub preset: bool,
 }
 
+/// A dot for tests of what is made of dots.
+#[cfg(test)]
+pub fn dot(ms: f64, error: f64, experiment: &str) -> Scored {
+    Scored {
+        index: 0,
+        ms,
+        error,
+        noisy: false,
+        noise: None,
+        experiment: experiment.into(),
+        preset: false,
+    }
+}
+
 /// Everything that is shown.
 #[derive(Default)]
 pub struct Data {

@@ -1,4 +1,4 @@
-//! What each family of methods reaches in equal time, and what an equal error costs it.
+//! Least error of each family of methods in equal time, and least time within an equal error.
 
 use super::data::{Data, Scored};
 use super::scatter::groups;
@@ -7,12 +7,12 @@ use crate::metrics::{METRICS, Metric};
 use crate::results::table::{Table, short};
 use maud::{Markup, html};
 
-/// Metric and part that are tabled.
+/// Metric and light component of the tables.
 const METRIC: &str = "flip";
 const PART: &str = "total";
-/// Errors whose price is asked.
+/// Error limits.
 const ERRORS: [f64; 5] = [0.02, 0.04, 0.06, 0.1, 0.15];
-/// Shortest and longest time whose error is asked, as powers of 2 [ms].
+/// Range of the time limits, as powers of 2 [ms].
 const TIMES: (i32, i32) = (-3, 10);
 
 /// A scene and its families.
@@ -146,18 +146,10 @@ impl Equal {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::report::data::dot;
 
     #[test]
     fn a_family_is_as_good_as_its_best_setting() {
-        let dot = |ms: f64, error: f64, experiment: &str| Scored {
-            index: 0,
-            ms,
-            error,
-            noisy: false,
-            noise: None,
-            experiment: experiment.into(),
-            preset: false,
-        };
         let dots = [
             dot(1.0, 0.12, "a"),
             dot(3.0, 0.05, "a"),

@@ -21,7 +21,7 @@ pub fn groups(dots: &[Scored]) -> Vec<&str> {
     names
 }
 
-/// Places of the dots with a bar, and what the bar shows.
+/// Index and noise of each dot with a bar.
 pub fn bars(dots: &[Scored]) -> impl Iterator<Item = (usize, f64)> {
     let noise = |(i, d): (usize, &Scored)| d.noise.filter(|n| *n > 0.0).map(|n| (i, n));
     dots.iter().enumerate().filter_map(noise)
@@ -177,18 +177,10 @@ fn around(values: impl Iterator<Item = f64>) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::report::data::dot;
 
     #[test]
     fn experiments_have_colours_and_a_key() {
-        let dot = |ms: f64, error: f64, experiment: &str| Scored {
-            index: 0,
-            ms,
-            error,
-            noisy: false,
-            noise: None,
-            experiment: experiment.into(),
-            preset: false,
-        };
         let dots = [
             dot(1.0, 0.2, "threads"),
             dot(2.0, 0.1, "threads"),
