@@ -46,8 +46,16 @@ fn with(mut experiment: Experiment, set: &[(&str, &str)]) -> Experiment {
     experiment
 }
 
+/// The experiment with those settings that its graph has.
+fn with_known(home: &Workspace, experiment: Experiment, settings: &[(&str, &str)]) -> Experiment {
+    let graph = load(&home.graph_path(&experiment.graph), &home.folders()).unwrap();
+    let known = |s: &&(&str, &str)| graph.params.index(s.0).is_some();
+    let known: Vec<_> = settings.iter().filter(known).copied().collect();
+    with(experiment, &known)
+}
+
 /// The shipped presets, small.
-fn presets() -> Vec<Experiment> {
+fn presets(home: &Workspace) -> Vec<Experiment> {
     let files = std::fs::read_dir(root().join("configs"))
         .unwrap()
         .map(|f| f.unwrap().path());
@@ -62,7 +70,8 @@ fn presets() -> Vec<Experiment> {
             size: (32, 24),
             ..experiment
         };
-        let mut experiment = with(experiment, &[("voxel_dim", "16"), ("shadow_dim", "256")]);
+        let small = [("voxel_dim", "16"), ("shadow_dim", "256")];
+        let mut experiment = with_known(home, experiment, &small);
         experiment.name = file.file_stem().unwrap().to_string_lossy().into_owned();
         experiment
     };
@@ -72,16 +81,10 @@ fn presets() -> Vec<Experiment> {
 /// Each preset alone, and the graphs under the options that they have; the graph with a temporal filter under those that
 /// pass through it. `warps.ron` gathers with the passes of `cones.ron`.
 fn cases() -> Vec<Experiment> {
-    let home = Workspace {
-        root: root().to_path_buf(),
-        cache: None,
-    };
+    let home = Workspace::with(root().to_path_buf(), None);
     // Rounds that are averaged go on for longer than these frames.
-    let one_round = |e: Experiment| match e.graph.as_str() {
-        "thesis.ron" => e,
-        _ => with(e, &[("accumulation_rounds", "1")]),
-    };
-    let presets: Vec<_> = presets().into_iter().map(one_round).collect();
+    let one_round = |e: Experiment| with_known(&home, e, &[("accumulation_rounds", "1")]);
+    let presets: Vec<_> = presets(&home).into_iter().map(one_round).collect();
     let (mut cases, mut graphs) = (presets.clone(), Vec::new());
     for preset in presets {
         if preset.graph == "warps.ron" || graphs.contains(&preset.graph) {
@@ -203,15 +206,12 @@ fn equal_settings_of_a_and_b_differ_in_no_bit() {
         validation: true,
         ..GpuOptions::default()
     };
-    let home = Workspace {
-        root: root().to_path_buf(),
-        cache: Some(common::cache()),
-    };
-    let engine = Engine::start(home, options, Arc::new(|| {}));
+    let home = Workspace::with(root().to_path_buf(), Some(common::cache()));
+    let engine = Engine::start(home.clone(), options, Arc::new(|| {}));
     let mut lit = LightState::of(&scene("cornell"));
     lit.lights[0].color *= 0.5;
     let mut number = 0;
-    for case in presets()
+    for case in presets(&home)
         .into_iter()
         .chain(["cones", "cone_rays", "lobe_rays"].map(|trace| {
             let small = [
@@ -226,7 +226,7 @@ fn equal_settings_of_a_and_b_differ_in_no_bit() {
                 ..with(
                     Experiment {
                         params: Vec::new(),
-                        ..presets().remove(0)
+                        ..presets(&home).remove(0)
                     },
                     &small,
                 )
@@ -278,7 +278,7 @@ fn a_point_of_a_sweep_lands_on_its_dot_in_the_chart() {
     let case = with(
         Experiment {
             params: Vec::new(),
-            ..presets().remove(0)
+            ..presets(&lab.home).remove(0)
         },
         &settings,
     );
@@ -309,11 +309,8 @@ fn a_point_of_a_sweep_lands_on_its_dot_in_the_chart() {
         validation: true,
         ..GpuOptions::default()
     };
-    let home = Workspace {
-        root: home.path().to_path_buf(),
-        cache: Some(common::cache()),
-    };
-    let engine = Engine::start(home, options, Arc::new(|| {}));
+    let home = Workspace::with(home.path().to_path_buf(), Some(common::cache()));
+    let engine = Engine::start(home.clone(), options, Arc::new(|| {}));
     let request = RenderRequest {
         sides: [Some(SideRequest::of(&case)), None],
         scene: "cornell".into(),

@@ -273,10 +273,7 @@ fn an_include_without_calls_costs_nothing() {
         for (name, text) in shaders {
             write(home.path(), &format!("shaders/{name}"), &of(text));
         }
-        let workspace = Workspace {
-            root: home.path().to_path_buf(),
-            cache: None,
-        };
+        let workspace = Workspace::with(home.path().to_path_buf(), None);
         let loaded = workspace.load("graph.ron").unwrap();
         let stages = loaded.linked.iter().flat_map(|l| l.stages.clone());
         stages

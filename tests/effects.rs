@@ -12,10 +12,7 @@ use std::collections::BTreeMap;
 
 /// The parameters of a graph that change nothing with these settings, and what shaders take for an aperture of 0.
 fn found(graph: &str, params: &str) -> (BTreeMap<String, Reason>, Option<f64>) {
-    let home = Workspace {
-        root: common::root().to_path_buf(),
-        cache: Some(common::cache()),
-    };
+    let home = Workspace::with(common::root().to_path_buf(), Some(common::cache()));
     let text =
         format!("(graph: \"{graph}\", scene: \"cornell\", size: (64, 48), params: {{ {params} }})");
     let experiment = Experiment::from_text("effects.ron".as_ref(), &text).unwrap();
@@ -135,10 +132,7 @@ fn a_warps_parameters_wait_for_the_warp() {
 
 #[test]
 fn the_graph_that_opens_first_pins_what_was_asked_for_in_that_order() {
-    let home = Workspace {
-        root: common::root().to_path_buf(),
-        cache: None,
-    };
+    let home = Workspace::with(common::root().to_path_buf(), None);
     let first = Experiment::read(&home.root.join("configs/cones.ron")).unwrap();
     let asked = [
         ("cone_count", "Cone count"),
@@ -164,10 +158,7 @@ fn the_graph_that_opens_first_pins_what_was_asked_for_in_that_order() {
 #[test]
 fn every_pinned_parameter_changes_the_picture() {
     let lab = common::lab(common::root());
-    let home = Workspace {
-        root: common::root().to_path_buf(),
-        cache: None,
-    };
+    let home = Workspace::with(common::root().to_path_buf(), None);
     for (graph, turned) in [
         (
             "cones.ron",

@@ -35,10 +35,7 @@ impl Driver {
             faults: Some(faults.clone()),
             ..GpuOptions::default()
         };
-        let home = Workspace {
-            root: root().to_path_buf(),
-            cache: Some(common::cache()),
-        };
+        let home = Workspace::with(root().to_path_buf(), Some(common::cache()));
         let engine = Engine::start(home.clone(), options.clone(), Arc::new(|| {}));
         let side = SideRequest {
             graph: "preview.ron".into(),

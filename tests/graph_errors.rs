@@ -180,10 +180,7 @@ impl Bench {
     }
 
     fn check(&self) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
-        let home = Workspace {
-            root: self.folder.path().to_path_buf(),
-            cache: None,
-        };
+        let home = Workspace::with(self.folder.path().to_path_buf(), None);
         let experiment = Experiment::read(&self.path("configs/run.ron"))?;
         let Loaded {
             graph,
@@ -247,10 +244,7 @@ fn a_graph_is_read_again_when_one_of_its_files_has_changed() {
         "    output:",
         "    modules: { \"lamp\": \"light.glsl\" },\n    output:",
     );
-    let home = Workspace {
-        root: bench.folder.path().to_path_buf(),
-        cache: None,
-    };
+    let home = Workspace::with(bench.folder.path().to_path_buf(), None);
     let read = || home.read("graph.ron");
     let first = read().unwrap();
     assert!(Arc::ptr_eq(&first, &read().unwrap()), "nothing has changed");

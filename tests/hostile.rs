@@ -553,7 +553,10 @@ fn includes_that_grow_with_a_power_or_go_in_a_circle_end_at_once() {
     for (file, pieces) in [
         ("passes/l.ron", &["x0.glsl > x1.glsl > x2.glsl"][..]),
         ("passes/r0.ron", &["32 deep", "r0.ron > ", "r1.ron > "]),
-        ("passes/rays.ron", &["display.ron > picture.ron > tone.ron > display.ron"]),
+        (
+            "passes/rays.ron",
+            &["display.ron > picture.ron > tone.ron > display.ron"],
+        ),
     ] {
         let begun = Instant::now();
         let output = conelab(home.path()).args(["check", file]).output().unwrap();

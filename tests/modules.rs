@@ -157,10 +157,7 @@ fn render(gpu: &Lab, folder: &Path, opacity: &str) -> ([Vec<u8>; 3], f64) {
 /// The same device on other folders.
 fn at(lab: &Lab, folder: &Path) -> Lab {
     Lab {
-        home: Workspace {
-            root: folder.to_path_buf(),
-            cache: lab.home.cache.clone(),
-        },
+        home: Workspace::with(folder.to_path_buf(), lab.home.cache.clone()),
         gpu: lab.gpu.clone(),
     }
 }
@@ -205,11 +202,7 @@ fn the_page_names_files_and_settings_that_are_there() {
         files(&home.path().join("passes")),
     ]
     .concat();
-    let folders = Workspace {
-        root: home.path().to_path_buf(),
-        cache: None,
-    }
-    .folders();
+    let folders = Workspace::with(home.path().to_path_buf(), None).folders();
     let graph = |name: &str| load(&folders.passes.join(name), &folders).unwrap().params;
     let graphs = [
         "rays.ron",
@@ -414,11 +407,7 @@ fn a_live_session_builds_only_what_includes_the_model() {
 
 #[test]
 fn what_is_no_more_says_what_to_write_instead() {
-    let folders = Workspace {
-        root: root().to_path_buf(),
-        cache: None,
-    }
-    .folders();
+    let folders = Workspace::with(root().to_path_buf(), None).folders();
     let graph = load(&folders.passes.join("rays.ron"), &folders).unwrap();
     let instead = |name: &str| {
         graph
@@ -626,10 +615,7 @@ fn a_fixed_parameter_keeps_its_default() {
 
 #[test]
 fn the_shipped_graphs_offer_at_most_46_parameters() {
-    let workspace = Workspace {
-        root: common::root().to_path_buf(),
-        cache: None,
-    };
+    let workspace = Workspace::with(common::root().to_path_buf(), None);
     for name in [
         "cones.ron",
         "rays.ron",
@@ -758,10 +744,7 @@ fn voxel_signature(home: &Workspace, graph: &Graph, settings: &[(&str, &str)]) -
 #[test]
 fn a_signature_differs_where_its_stage_reads_other_settings() {
     let home = common::home();
-    let workspace = Workspace {
-        root: home.path().to_path_buf(),
-        cache: Some(common::cache()),
-    };
+    let workspace = Workspace::with(home.path().to_path_buf(), Some(common::cache()));
     let graph = workspace.load("warps.ron").unwrap().graph;
     let base = [
         ("volume_scroll", "true"),

@@ -270,10 +270,7 @@ fn between(param: &Param, default: f64) -> f64 {
 
 #[test]
 fn every_option_has_a_line_of_help() {
-    let home = Workspace {
-        root: root().to_path_buf(),
-        cache: None,
-    };
+    let home = Workspace::with(root().to_path_buf(), None);
     for graph in [
         "rays.ron",
         "cones.ron",
@@ -305,10 +302,7 @@ fn every_option_has_a_line_of_help() {
 #[test]
 fn every_option_builds_renders_and_changes_what_its_group_says() {
     let (lab, scenes) = (lab(root()), Scenes::new());
-    let home = Workspace {
-        root: root().to_path_buf(),
-        cache: None,
-    };
+    let home = Workspace::with(root().to_path_buf(), None);
     let params = |graph: &str| {
         load(&home.graph_path(graph), &home.folders())
             .unwrap()

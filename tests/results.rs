@@ -442,10 +442,7 @@ fn voxels() -> String {
 
 /// Defaults of the parameters that both methods have and declare differently, and what one has alone.
 fn presets() -> String {
-    let home = Workspace {
-        root: root().to_path_buf(),
-        cache: None,
-    };
+    let home = Workspace::with(root().to_path_buf(), None);
     let params = |graph: &str| {
         load(&home.graph_path(graph), &home.folders())
             .unwrap()

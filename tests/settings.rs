@@ -144,10 +144,7 @@ fn no_setting_makes_a_nan() {
     let count = common::number("CONELAB_FUZZ").unwrap_or(SETTINGS);
     let seed = common::number("CONELAB_FUZZ_SEED").unwrap_or(1);
     let lab = lab(root());
-    let home = Workspace {
-        root: root().to_path_buf(),
-        cache: None,
-    };
+    let home = Workspace::with(root().to_path_buf(), None);
     let graphs = GRAPHS.map(|name| {
         (
             name,

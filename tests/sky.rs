@@ -412,14 +412,11 @@ fn experiments_change_the_picture_and_are_written_with_it() {
     let hashes = [&lit, &turned, &dimmed].map(|s| scene_hash(s));
     assert!(hashes[0] != hashes[1] && hashes[0] != hashes[2]);
     // Written, also to another folder, and read back.
-    let defaults = conelab::lab::Workspace {
-        root: root().to_path_buf(),
-        cache: None,
-    }
-    .read("rays.ron")
-    .unwrap()
-    .params
-    .clone();
+    let defaults = conelab::lab::Workspace::with(root().to_path_buf(), None)
+        .read("rays.ron")
+        .unwrap()
+        .params
+        .clone();
     for to in [
         folder.path().join("again.ron"),
         folder.path().join("deep/again.ron"),

@@ -12,16 +12,21 @@ use crate::scene::Scene;
 use crate::vulkan::VulkanError;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Progress of a campaign.
 pub enum Progress {
     /// Number of points to measure, and of those that are already finished.
     Begins {
+        /// Points to measure.
         todo: usize,
+        /// Points that are finished.
         before: usize,
     },
+    /// A line for the user.
     Note(String),
+    /// Title of the point that is measured now.
     Runs(String),
     /// Progress of a reference.
     Gathers(Gathered),
@@ -33,9 +38,15 @@ pub enum Progress {
     Ends,
 }
 
+/// Takes progress. `Break` ends the campaign with [`LabError::Stopped`]; finished points are kept.
+pub type OnProgress<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
+
+/// Numbers of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
+    /// Points with measurements.
     pub done: usize,
+    /// Points with errors.
     pub failed: usize,
 }
 
@@ -50,16 +61,18 @@ impl Counts {
     }
 }
 
+/// Opens a device.
 pub type Open<'a> = dyn Fn() -> Result<Lab, LabError> + 'a;
 
 /// A device with caches for the next measurements.
 pub struct Runner<'a> {
     open: &'a Open<'a>,
+    /// The device.
     pub lab: Lab,
     /// Caches of earlier measurements.
     pub warm: Warm,
     points: PointBuilder<'a>,
-    on_progress: &'a mut dyn FnMut(Progress),
+    on_progress: &'a mut OnProgress<'a>,
 }
 
 /// A point of a campaign.
@@ -69,8 +82,10 @@ pub trait Job {
     /// Measurements of a job.
     type Measured: Serialize + DeserializeOwned;
 
+    /// Identifier of the point, and name of its record.
     fn id(&self) -> &str;
 
+    /// Title for people.
     fn title(&self) -> String;
 
     /// Description for the record.
@@ -90,10 +105,14 @@ pub type Taken<J> = Result<(<J as Job>::Measured, Vec<File>), LabError>;
 pub type Kept<'a, J> = dyn FnMut(&mut Runner, &J) -> Result<Option<RecordOf<J>>, LabError> + 'a;
 
 impl<'a> Runner<'a> {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// There is none.
     pub fn open(
         open: &'a Open<'a>,
         open_scene: &'a OpenScene<'a>,
-        on_progress: &'a mut dyn FnMut(Progress),
+        on_progress: &'a mut OnProgress<'a>,
     ) -> Result<Runner<'a>, LabError> {
         let points = PointBuilder::new(open_scene);
         Ok(Runner {
@@ -106,6 +125,9 @@ impl<'a> Runner<'a> {
     }
 
     /// The point of an experiment.
+    ///
+    /// # Errors
+    /// Mistakes in the experiment or its graph; a scene that cannot be opened.
     pub fn point(
         &mut self,
         experiment: Experiment,
@@ -116,11 +138,21 @@ impl<'a> Runner<'a> {
             .point(&self.lab.home, &mut self.warm, experiment, labels, frames)
     }
 
-    pub fn tell(&mut self, progress: Progress) {
-        (self.on_progress)(progress);
+    /// Tells progress.
+    ///
+    /// # Errors
+    /// Whoever takes it ends the campaign.
+    pub fn tell(&mut self, progress: Progress) -> Result<(), LabError> {
+        match (self.on_progress)(progress) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(LabError::Stopped),
+        }
     }
 
     /// A reference, see [`Warm::reference`].
+    ///
+    /// # Errors
+    /// As [`Warm::reference`].
     pub fn reference(
         &mut self,
         experiment: &Experiment,
@@ -141,6 +173,10 @@ impl<'a> Runner<'a> {
 
     /// Records of jobs, in order. `kept` returns existing records, `measure` measures the others.
     /// An error of a job becomes its record.
+    ///
+    /// # Errors
+    /// A folder that cannot be written to; a device that cannot be opened again; whoever follows the
+    /// progress ends the campaign.
     pub fn run<J: Job>(
         &mut self,
         folder: &Folder,
@@ -156,7 +192,7 @@ impl<'a> Runner<'a> {
         self.tell(Progress::Begins {
             todo: jobs.len() - before,
             before,
-        });
+        })?;
         let mut records = Vec::new();
         for (job, record) in jobs.iter().zip(finished) {
             records.push(match record {
@@ -164,11 +200,14 @@ impl<'a> Runner<'a> {
                 None => self.measured(folder, *job, measure)?,
             });
         }
-        self.tell(Progress::Ends);
+        self.tell(Progress::Ends)?;
         Ok(records)
     }
 
     /// Record of one job, see [`Runner::run`].
+    ///
+    /// # Errors
+    /// As [`Runner::run`].
     pub fn one<J: Job>(
         &mut self,
         folder: &Folder,
@@ -188,18 +227,19 @@ impl<'a> Runner<'a> {
         job: &J,
         measure: &mut dyn FnMut(&mut Runner, &J) -> Taken<J>,
     ) -> Result<RecordOf<J>, LabError> {
-        self.tell(Progress::Runs(job.title()));
+        self.tell(Progress::Runs(job.title()))?;
         let mut result = measure(self, job);
         if self.opened_again(&result)? {
             // The previous point is often the cause. If it is this one, it fails again.
             self.tell(Progress::Note(
                 "the device was lost; it is opened again".into(),
-            ));
+            ))?;
             result = measure(self, job);
             self.opened_again(&result)?;
         }
         let (outcome, files) = match result {
             Ok((measured, files)) => (Outcome::Done(Box::new(measured)), files),
+            Err(LabError::Stopped) => return Err(LabError::Stopped),
             Err(error) => (Outcome::Failed(error.to_string()), Vec::new()),
         };
         let about = job.about(self, folder)?;
@@ -219,7 +259,7 @@ impl<'a> Runner<'a> {
                 .map(|w| format!("warning: {w}"))
                 .collect(),
         };
-        self.tell(Progress::Finished(job.title(), said));
+        self.tell(Progress::Finished(job.title(), said))?;
         // Reads the record back, so that rounded numbers are the same in all tables.
         Ok(folder.read(&record.id).unwrap_or(record))
     }
@@ -237,7 +277,7 @@ impl<'a> Runner<'a> {
 
 /// Mistakes without duplicates; every combination repeats them.
 #[derive(Default)]
-pub struct Mistakes(Vec<Diagnostic>);
+pub(crate) struct Mistakes(Vec<Diagnostic>);
 
 impl Mistakes {
     /// Takes a result. `None` if it has mistakes, which are kept.

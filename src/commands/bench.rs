@@ -4,14 +4,14 @@ use super::DeviceArgs;
 use super::adapt::{check_frames, parse_size};
 use super::campaign_bar::bar;
 use crate::campaign::bench::{
-    Bench, Compared, Record, Recorded, against_text, bench, charts, compare, csv, percent,
-    record_file, slower, text,
+    Bench, Compared, Record, Recorded, against_text, bench, charts, compare, csv, of_sweep,
+    percent, record_file, slower, text,
 };
 use crate::campaign::points::SweepPoint;
 use crate::campaign::record::{json, write_file, write_files};
 use crate::campaign::runner::Runner;
 use crate::campaign::settings::axis;
-use crate::campaign::sweep::{Sweep, list};
+use crate::campaign::sweep::Sweep;
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Workspace};
 use crate::measure::Frames;
@@ -73,10 +73,6 @@ const FRAMES: Frames = Frames {
     count: 40,
 };
 
-/// Warm-up on GPUs. Bounces of the graphs here gather more often until frame 77 after a change. A
-/// software device would take minutes.
-const GPU_WARMUP: usize = 128;
-
 /// Measures and prints tables; an error if a configuration failed, or became slower than recorded.
 pub fn run(args: &BenchArgs) -> Result<(), LabError> {
     if !(args.tolerance.is_finite() && args.tolerance >= 0.0) {
@@ -97,13 +93,6 @@ fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
     let (home, mut bar) = (Workspace::find()?, bar("measurements "));
     let open = || Lab::open(home.clone(), args.device.options());
     let mut runner = Runner::open(&open, &super::open_scene, &mut bar)?;
-    let frames = match args.warmup {
-        None if runner.lab.gpu.info.kind != "cpu" => Frames {
-            warmup: GPU_WARMUP,
-            ..frames
-        },
-        _ => frames,
-    };
     let record = args
         .record
         .as_deref()
@@ -112,11 +101,7 @@ fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
         .as_ref()
         .map(|path| super::writable(path, &["json"]))
         .transpose()?;
-    let (points, _) = list(&mut runner, &sweep, frames)?;
-    if let Some(why) = points.iter().find_map(|p| p.absent.clone()) {
-        return Err(LabError::Request(why));
-    }
-    let result = bench(&mut runner, sweep.names, &points, rounds, frames)?;
+    let (result, points) = of_sweep(&mut runner, &sweep, rounds, args.warmup)?;
     say_part!("{}", text(&result));
     write(args, &home, &sweep.name, &result)?;
     super::validated(&runner.lab)?;

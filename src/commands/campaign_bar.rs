@@ -5,6 +5,7 @@ use crate::campaign::runner::Progress;
 use crate::measure::reference::Gathered;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 /// Least time between two lines about a reference.
@@ -61,43 +62,46 @@ impl Lines {
 }
 
 /// Shows progress; `points` is the noun for the points.
-pub fn bar(points: &str) -> impl FnMut(Progress) {
+pub fn bar(points: &str) -> impl FnMut(Progress) -> ControlFlow<()> {
     let bar = ProgressBar::new(0).with_style(
         ProgressStyle::with_template("{pos}/{len} {bar:30} {elapsed} so far, {eta} left {msg}")
             .unwrap_or_else(|_| ProgressStyle::default_bar()),
     );
     let mut doing = String::new();
     let mut lines = Lines::new();
-    move |progress| match progress {
-        Progress::Begins { todo, before } => {
-            if before > 0 {
-                bar.suspend(|| say!("{before} {points}already done, {todo} remaining"));
+    move |progress| {
+        match progress {
+            Progress::Begins { todo, before } => {
+                if before > 0 {
+                    bar.suspend(|| say!("{before} {points}already done, {todo} remaining"));
+                }
+                bar.reset();
+                bar.set_length(todo as u64);
+                lines.begins(todo);
             }
-            bar.reset();
-            bar.set_length(todo as u64);
-            lines.begins(todo);
+            Progress::Note(text) => bar.suspend(|| warn!("{text}")),
+            Progress::Runs(what) => {
+                bar.set_message(what.clone());
+                doing = what;
+            }
+            Progress::Gathers(now) => {
+                lines.gathers(&now);
+                bar.set_message(format!(
+                    "{doing}, reference {} of {} samples",
+                    now.samples, now.goal
+                ));
+            }
+            Progress::Tried(text) => bar.suspend(|| say!("{text}")),
+            Progress::Finished(what, said) => {
+                bar.suspend(|| {
+                    said.iter()
+                        .for_each(|text| warn!("{what}: {}", first_line(text)))
+                });
+                bar.inc(1);
+                lines.finished(&what);
+            }
+            Progress::Ends => bar.finish_and_clear(),
         }
-        Progress::Note(text) => bar.suspend(|| warn!("{text}")),
-        Progress::Runs(what) => {
-            bar.set_message(what.clone());
-            doing = what;
-        }
-        Progress::Gathers(now) => {
-            lines.gathers(&now);
-            bar.set_message(format!(
-                "{doing}, reference {} of {} samples",
-                now.samples, now.goal
-            ));
-        }
-        Progress::Tried(text) => bar.suspend(|| say!("{text}")),
-        Progress::Finished(what, said) => {
-            bar.suspend(|| {
-                said.iter()
-                    .for_each(|text| warn!("{what}: {}", first_line(text)))
-            });
-            bar.inc(1);
-            lines.finished(&what);
-        }
-        Progress::Ends => bar.finish_and_clear(),
+        ControlFlow::Continue(())
     }
 }

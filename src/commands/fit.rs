@@ -3,7 +3,7 @@
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
 use super::campaign_bar::bar;
-use crate::campaign::fit::{self, Fitted, Found, Goal, Request, Stop};
+use crate::campaign::fit::{self, Fitted, Found, Goal, LEAST_GAIN, Request};
 use crate::campaign::runner::Progress;
 use crate::campaign::settings::{Axis, axis};
 use crate::experiment::Experiment;
@@ -65,9 +65,6 @@ pub struct FitArgs {
     #[command(flatten)]
     device: DeviceArgs,
 }
-
-/// Gains below this part of a time or an error are taken for noise.
-const LEAST_GAIN: f64 = 0.01;
 
 fn goal(args: &FitArgs) -> Result<Goal, LabError> {
     let goal = match (args.max_error, args.max_ms) {
@@ -152,14 +149,6 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
     }
 }
 
-fn why(stop: Stop) -> &'static str {
-    match stop {
-        Stop::Local => "no setting near the Pareto front is better",
-        Stop::Evaluations => "all evaluations are used",
-        Stop::Unreachable => "no setting is within the bound",
-    }
-}
-
 /// The printed result of a search.
 fn summary(found: &Found, args: &FitArgs, goal: Goal, axes: &[Axis]) -> Vec<String> {
     let (ms, error) = goal.time_and_error(found.trial);
@@ -177,7 +166,7 @@ fn summary(found: &Found, args: &FitArgs, goal: Goal, axes: &[Axis]) -> Vec<Stri
         format!(
             "{} of {grid} settings tried; {}",
             found.tried.len(),
-            why(found.stop)
+            found.stop.text()
         ),
     ]
 }

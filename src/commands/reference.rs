@@ -35,9 +35,6 @@ pub struct ReferenceArgs {
     device: DeviceArgs,
 }
 
-/// Default samples per pixel.
-const DEFAULT_SAMPLES: u64 = 256;
-
 /// Gathers a reference.
 pub fn run(args: &ReferenceArgs) -> Result<(), LabError> {
     let experiment = args.experiment.read()?;
@@ -49,7 +46,7 @@ pub fn run(args: &ReferenceArgs) -> Result<(), LabError> {
             most: args.spp.unwrap_or(bound.most),
             ..bound
         }),
-        None => Goal::Samples(args.spp.unwrap_or(DEFAULT_SAMPLES)),
+        None => Goal::Samples(args.spp.unwrap_or(Goal::DEFAULT_SAMPLES)),
     };
     let home = Workspace::find()?;
     let scene = Arc::new(adapt::open_scene(&experiment)?);

@@ -46,10 +46,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), LabError> {
         say!("{change}");
     }
     // Graph and shaders are the capture's own; the project has only the caches.
-    let home = Workspace {
-        root: args.capture.clone(),
-        cache: Workspace::cache(),
-    };
+    let home = Workspace::with(args.capture.clone(), Workspace::cache());
     let lab = Lab::open(home, args.device.options())?;
     let output = args.output.as_deref();
     let result = replay(&lab, &args.capture, &manifest, super::open_scene, output)?;

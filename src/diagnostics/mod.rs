@@ -36,14 +36,15 @@ pub enum Severity {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
     /// Severity.
-    pub(crate) severity: Severity,
+    pub severity: Severity,
     /// Position of the finding.
     pub place: Place,
     /// The problem and the expected input.
     pub message: String,
     /// A remedy, for example the nearest known name.
     pub help: Option<String>,
-    pub(crate) source: Option<String>,
+    /// The line it is about.
+    pub source: Option<String>,
 }
 
 impl Diagnostic {

@@ -72,6 +72,9 @@ pub enum LabError {
     /// The validation layer printed messages; their number.
     #[error("the Vulkan validation layer had {0} messages (see above)")]
     Validation(usize),
+    /// Whoever follows the progress ended the work. What is finished is kept.
+    #[error("stopped; what was finished is kept")]
+    Stopped,
     /// Any other request that cannot be fulfilled.
     #[error("{0}")]
     Request(String),

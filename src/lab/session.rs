@@ -273,6 +273,15 @@ impl Session {
         }
     }
 
+    /// Whether a texture holds the last frame's content: whether it was wanted, or is kept between
+    /// frames anyway.
+    pub fn keeps(&self, texture: &str) -> bool {
+        let plan = self.graph.texture(texture);
+        let plan = plan.map(|i| &self.program.plan.textures[i]);
+        plan.is_some_and(|p| !p.usage.is_empty() && !p.transient)
+            || self.wanted.iter().any(|w| w == texture)
+    }
+
     /// Reads a texture's mip and layer.
     ///
     /// # Errors

@@ -36,6 +36,8 @@ static LAST: Mutex<BTreeMap<(PathBuf, PathBuf), Arc<Graph>>> = Mutex::new(BTreeM
 pub struct Workspace {
     /// The folder with `passes`, `shaders` and `configs`.
     pub root: PathBuf,
+    /// Folder of references, and of whatever else is made: `captures` in the root.
+    pub captures: PathBuf,
     /// Folder for compiled shaders and pipelines.
     pub cache: Option<PathBuf>,
 }
@@ -47,7 +49,16 @@ impl Workspace {
     /// # Errors
     /// None of them has the folders.
     pub fn find() -> Result<Workspace, LabError> {
-        let fits = |p: &Path| p.join("passes").is_dir() && p.join("shaders").is_dir();
+        Workspace::find_or(None)
+    }
+
+    /// [`Workspace::find`], and `last` where nothing else has the folders. If that is not in a
+    /// folder for work, but one of the system's or of an environment's, captures are in the working
+    /// folder.
+    ///
+    /// # Errors
+    /// None of them has the folders.
+    pub fn find_or(last: Option<PathBuf>) -> Result<Workspace, LabError> {
         let named = std::env::var_os("CONELAB_HOME").map(PathBuf::from);
         let working = std::env::current_dir().ok();
         let program = std::env::current_exe().ok();
@@ -56,7 +67,7 @@ impl Workspace {
             .flat_map(|p| p.ancestors())
             .chain(program.iter().flat_map(|p| p.ancestors()));
         let root = match &named {
-            Some(path) if fits(path) => Some(path.clone()),
+            Some(path) if has_sources(path) => Some(path.clone()),
             Some(path) => {
                 let message = format!(
                     "CONELAB_HOME is '{}', which has no passes and shaders folders",
@@ -64,17 +75,42 @@ impl Workspace {
                 );
                 return Err(LabError::Request(message));
             }
-            None => upwards.into_iter().find(|p| fits(p)).map(Path::to_path_buf),
+            None => upwards
+                .into_iter()
+                .find(|p| has_sources(p))
+                .map(Path::to_path_buf),
         };
-        let root = root.ok_or_else(|| {
-            LabError::Request(
+        match (root, last.filter(|p| has_sources(p))) {
+            (Some(root), _) => Workspace::at(root),
+            (None, Some(last)) => Ok(Workspace {
+                captures: PathBuf::from("captures"),
+                ..Workspace::at(last)?
+            }),
+            (None, None) => Err(LabError::Request(
                 "cannot find the folders passes and shaders: run it in conelab's folder, or set CONELAB_HOME".into(),
-            )
-        })?;
-        Ok(Workspace {
+            )),
+        }
+    }
+
+    /// Folders that are known.
+    pub fn with(root: PathBuf, cache: Option<PathBuf>) -> Workspace {
+        Workspace {
+            captures: root.join("captures"),
             root,
-            cache: Workspace::cache(),
-        })
+            cache,
+        }
+    }
+
+    /// The folders in `root`.
+    ///
+    /// # Errors
+    /// It has no `passes` or no `shaders`.
+    pub fn at(root: PathBuf) -> Result<Workspace, LabError> {
+        if !has_sources(&root) {
+            let message = format!("'{}' has no passes and shaders folders", root.display());
+            return Err(LabError::Request(message));
+        }
+        Ok(Workspace::with(root, Workspace::cache()))
     }
 
     /// The folder for compiled shaders and pipelines.
@@ -284,6 +320,10 @@ impl Workspace {
             runs,
         )
     }
+}
+
+fn has_sources(root: &Path) -> bool {
+    root.join("passes").is_dir() && root.join("shaders").is_dir()
 }
 
 /// The passes that an experiment runs; all if its parameters have mistakes, which another check

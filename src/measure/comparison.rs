@@ -50,6 +50,7 @@ impl Side {
 pub struct Comparison {
     /// [`SCHEMA`].
     pub schema: String,
+    /// Version of the program.
     pub version: String,
     /// Width and height, pixels.
     pub size: [u32; 2],
@@ -77,6 +78,7 @@ pub struct PartComparison {
     pub structure_noise: Option<f64>,
     /// First and last exposure of HDR-FLIP, stops.
     pub exposures: [f64; 2],
+    /// Number of exposures.
     pub exposure_count: u32,
     /// The whole frame, then the regions.
     pub regions: Vec<RegionComparison>,

@@ -1,7 +1,7 @@
 //! Measurement of one experiment: pass times, memory, failed checks, and errors against a
 //! reference.
 
-pub(crate) mod comparison;
+pub mod comparison;
 pub mod oracle;
 mod pictures;
 pub mod reference;

@@ -61,13 +61,16 @@ impl Warm {
     /// The reference of an experiment: from memory, from disk, or gathered now; `None` if it does
     /// not exist and must not be gathered. `subject` identifies the scene, light, camera, size and
     /// time.
+    ///
+    /// # Errors
+    /// As [`gather`]; `on_progress` stops it.
     pub fn reference(
         &mut self,
         lab: &Lab,
         (experiment, scene): (&Experiment, &Arc<Scene>),
         subject: &str,
         wanted: Wanted,
-        on_progress: &mut dyn FnMut(Gathered),
+        on_progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
     ) -> Result<Option<Arc<Reference>>, LabError> {
         // Only parameters that the reference graph shares affect the reference.
         let shared = self.graph(&lab.home, GRAPH)?.graph.params.clone();
@@ -84,9 +87,11 @@ impl Warm {
             return Ok(found.clone());
         }
         let bounces = wanted.bounces;
+        let mut stopped = false;
         let mut go_on = |now| {
-            on_progress(now);
-            ControlFlow::Continue(())
+            let flow = on_progress(now);
+            stopped |= flow.is_break();
+            flow
         };
         let reference = match (wanted.goal, wanted.seed) {
             (None, _) => find(&lab.home, experiment, scene, bounces)?,
@@ -100,6 +105,9 @@ impl Warm {
                 )
             }
         };
+        if stopped {
+            return Err(LabError::Stopped);
+        }
         let reference = reference.map(Arc::new);
         let all = self.references.values().flatten().chain(&reference);
         if all.map(|r| r.bytes()).sum::<usize>() > MAX_REFERENCES {

@@ -18,9 +18,26 @@ const STRUCTURE: f64 = 0.5;
 pub struct MapFile {
     /// Suffix of the file's name, for example `flip.png`.
     pub name: &'static str,
+    /// Content of the file.
     pub bytes: Vec<u8>,
     /// Meaning of its colours or channels.
     pub scale: String,
+}
+
+/// Maps of a comparison as numbers, row by row, by name: `flip`, `hdrFlip`, `luminanceDifference`
+/// (of the picture less the reference, radiance), `relativeSquaredError`, `structure`.
+pub fn layers(compared: &Compared) -> Vec<(&'static str, Vec<f32>)> {
+    let pairs = || compared.test.rgb.iter().zip(&compared.reference.rgb);
+    let square = |(x, r): (&f32, &f32)| relative_square(*x, *r, *r);
+    let relative = pairs().map(|(x, r)| x.iter().zip(r).map(square).sum::<f64>() / 3.0);
+    let difference = pairs().map(|(x, r)| (luminance(*x) - luminance(*r)) as f32);
+    vec![
+        ("flip", compared.flip().to_vec()),
+        ("hdrFlip", compared.hdr_flip().to_vec()),
+        ("luminanceDifference", difference.collect()),
+        ("relativeSquaredError", relative.map(|v| v as f32).collect()),
+        ("structure", compared.structure().map()),
+    ]
 }
 
 /// The error maps of a comparison. FLIP and HDR-FLIP use the colours of NVIDIA's evaluator (magma),
@@ -31,13 +48,10 @@ pub struct MapFile {
 /// # Errors
 /// A size that PNG or EXR does not support.
 pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
-    let pairs = || compared.test.rgb.iter().zip(&compared.reference.rgb);
-    let square = |(x, r): (&f32, &f32)| relative_square(*x, *r, *r);
-    let relative = pairs().map(|(x, r)| x.iter().zip(r).map(square).sum::<f64>() / 3.0);
-    let relative: Vec<f32> = relative.map(|v| v as f32).collect();
-    let difference = pairs().map(|(x, r)| (luminance(*x) - luminance(*r)) as f32);
-    let difference: Vec<f32> = difference.collect();
-    let structure = compared.structure().map();
+    let layers = layers(compared);
+    let [flip, hdr_flip, difference, relative, structure] = &layers[..] else {
+        return Err(MetricError("a map is missing".into()));
+    };
     // The share of dark pixels in the mean is known.
     let full = (compared.dark / super::DARK).max(f64::MIN_POSITIVE);
     let size = compared.test.size;
@@ -51,35 +65,26 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
         })
     };
     Ok(vec![
-        png("flip.png", compared.flip().iter().map(|v| magma(f64::from(*v))).collect(), flip_scale.into())?,
-        png("hdr-flip.png", compared.hdr_flip().iter().map(|v| magma(f64::from(*v))).collect(), flip_scale.into())?,
+        png("flip.png", flip.1.iter().map(|v| magma(f64::from(*v))).collect(), flip_scale.into())?,
+        png("hdr-flip.png", hdr_flip.1.iter().map(|v| magma(f64::from(*v))).collect(), flip_scale.into())?,
         png(
             "relative-error.png",
-            relative.iter().map(|v| magma(logarithmic(v))).collect(),
+            relative.1.iter().map(|v| magma(logarithmic(v))).collect(),
             format!("(x - r)^2 / (r^2 + 0.01), magma, logarithmic from 1e{} to 1e{}", DECADES.0, DECADES.1),
         )?,
         png(
             "luminance.png",
-            difference.iter().map(|v| diverging(f64::from(*v) / full)).collect(),
+            difference.1.iter().map(|v| diverging(f64::from(*v) / full)).collect(),
             format!("luminance x - r, blue -{full:.4} over white 0 to red +{full:.4}"),
         )?,
         png(
             "structure.png",
-            structure.iter().map(|v| magma(f64::from(*v) / STRUCTURE)).collect(),
+            structure.1.iter().map(|v| magma(f64::from(*v) / STRUCTURE)).collect(),
             format!("structure error, magma, 0 to {STRUCTURE}"),
         )?,
         MapFile {
             name: "maps.exr",
-            bytes: encode_exr(
-                size,
-                [
-                    ("flip", compared.flip()),
-                    ("hdrFlip", compared.hdr_flip()),
-                    ("luminanceDifference", &difference),
-                    ("relativeSquaredError", &relative),
-                    ("structure", &structure),
-                ],
-            )?,
+            bytes: encode_exr(size, &layers)?,
             scale: "32-bit floats; channels flip, hdrFlip, luminanceDifference, relativeSquaredError, structure".into(),
         },
     ])
@@ -122,11 +127,12 @@ fn encode_png((width, height): (u32, u32), rgb: &[[u8; 3]]) -> Result<Vec<u8>, M
 
 fn encode_exr(
     (width, height): (u32, u32),
-    channels: [(&str, &[f32]); 5],
+    layers: &[(&str, Vec<f32>)],
 ) -> Result<Vec<u8>, MetricError> {
-    let channel =
-        |(name, values): (&str, &[f32])| AnyChannel::new(name, FlatSamples::F32(values.to_vec()));
-    let channels = AnyChannels::sort(channels.into_iter().map(channel).collect());
+    let channel = |(name, values): &(&str, Vec<f32>)| {
+        AnyChannel::new(*name, FlatSamples::F32(values.clone()))
+    };
+    let channels = AnyChannels::sort(layers.iter().map(channel).collect());
     let size = (width as usize, height as usize);
     let layer = Layer::new(
         size,

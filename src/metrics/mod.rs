@@ -4,18 +4,19 @@
 pub mod colour;
 pub(crate) mod flip;
 pub(crate) mod hdr_flip;
-pub(crate) mod maps;
+pub mod maps;
 mod means;
 mod noise;
 mod rank;
-pub(crate) mod region;
+pub mod region;
 mod structure;
 mod table;
 
 pub use noise::Noise;
 pub(crate) use rank::{median, percentile};
 pub use structure::{structure, structure_noise};
-pub(crate) use table::{Best, RELMSE};
+pub use table::Best;
+pub(crate) use table::RELMSE;
 pub use table::{METRICS, Metric, Scores};
 
 use hdr_flip::Exposures;

@@ -2,6 +2,6 @@
 
 pub mod capture;
 pub mod picture;
-pub(crate) mod stats;
+pub mod stats;
 pub(crate) mod table;
 pub(crate) mod timers;

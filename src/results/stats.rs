@@ -17,7 +17,9 @@ pub const SCHEMA: &str = "conelab-stats-1";
 /// Minimum, median and 95th percentile (ms).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
+    /// Minimum.
     pub min: f64,
+    /// Median.
     pub median: f64,
     /// 95th percentile.
     pub p95: f64,
@@ -31,7 +33,9 @@ pub struct PassStats {
     /// Group in tables and charts: the graph's `stage` of the pass, or its name.
     #[serde(default)]
     pub stage: String,
+    /// Time on the GPU.
     pub gpu_ms: Spread,
+    /// Timed frames.
     pub frames: usize,
     /// Frames in which it was skipped; they count as 0 ms.
     #[serde(default)]
@@ -39,10 +43,14 @@ pub struct PassStats {
     pub skipped: usize,
 }
 
+/// A device.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DeviceStats {
+    /// Name as the driver gives it.
     pub name: String,
+    /// Driver with its version.
     pub driver: String,
+    /// Version of Vulkan.
     pub api: String,
     /// discrete, integrated, virtual, cpu or other.
     pub kind: String,
@@ -65,14 +73,21 @@ impl DeviceStats {
 pub struct Stats {
     /// [`SCHEMA`].
     pub schema: String,
+    /// Version of the program.
     pub version: String,
+    /// The device.
     pub device: DeviceStats,
+    /// Name of the experiment.
     pub experiment: String,
+    /// Name of the graph.
     pub graph: String,
+    /// Name of the scene.
     pub scene: String,
     /// Triangles of the scene.
     pub triangles: usize,
+    /// Width and height, pixels.
     pub size: [u32; 2],
+    /// Values of all parameters.
     pub params: BTreeMap<String, serde_json::Value>,
     /// The options that `auto` stands for on this device, by parameter.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]

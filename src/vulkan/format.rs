@@ -17,6 +17,7 @@ pub enum Channels {
 pub struct Format {
     /// Name in graphs; for storage formats also in GLSL.
     pub name: &'static str,
+    /// The format in Vulkan.
     pub vk: vk::Format,
     /// Bytes per texel.
     pub bytes: u32,
@@ -82,6 +83,7 @@ impl Format {
         FORMATS.iter().find(|f| f.name == name).copied()
     }
 
+    /// All names.
     pub fn names() -> impl Iterator<Item = &'static str> {
         FORMATS.iter().map(|f| f.name)
     }

@@ -98,10 +98,7 @@ pub fn lab(home: &Path) -> Lab {
 
 /// The same, used as if it lacked these features.
 pub fn lab_without(home: &Path, masks: &[&str]) -> Lab {
-    let home = Workspace {
-        root: home.to_path_buf(),
-        cache: Some(cache()),
-    };
+    let home = Workspace::with(home.to_path_buf(), Some(cache()));
     let options = GpuOptions {
         device: Some(device()),
         validation: true,
@@ -119,10 +116,7 @@ pub fn scene(name: &str) -> Arc<Scene> {
 /// The plainest of the repository's graphs that has all of these parameters.
 #[track_caller]
 pub fn graph_with(params: &[(&str, &str)]) -> String {
-    let home = Workspace {
-        root: root().to_path_buf(),
-        cache: None,
-    };
+    let home = Workspace::with(root().to_path_buf(), None);
     let has_all = |name: &String| {
         let graph = conelab::lab::load(&home.graph_path(name), &home.folders()).unwrap();
         params

@@ -11,10 +11,12 @@ pub use against::{Verdict, judge};
 pub(crate) use charts::charts;
 pub use record::Record;
 pub(crate) use record::{Recorded, check_record, record_file};
-pub(crate) use tables::{csv, text};
+pub use tables::csv;
+pub(crate) use tables::text;
 
 use crate::campaign::points::SweepPoint;
 use crate::campaign::runner::{Progress, Runner};
+use crate::campaign::sweep::{Sweep, list};
 use crate::graph::run::FrameTimes;
 use crate::lab::{LabError, ReusableParts, Session};
 use crate::measure::{Frames, Timed, timed};
@@ -27,21 +29,24 @@ pub(crate) const SCHEMA: &str = "conelab-bench-1";
 
 /// The measurements of a benchmark.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Bench {
+pub struct Bench {
     /// [`SCHEMA`].
     pub schema: String,
+    /// The device.
     pub device: DeviceStats,
+    /// Number of rounds.
     pub rounds: usize,
     /// Frames of every round. Its warm-up has at least this number.
     pub frames: Frames,
     /// Names of the varied settings, in order.
     pub names: Vec<String>,
+    /// The configurations, in order.
     pub configurations: Vec<Configuration>,
 }
 
 /// One of the configurations.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Configuration {
+pub struct Configuration {
     /// Values by the names of the varied settings.
     pub labels: IndexMap<String, String>,
     /// Picture size, pixels.
@@ -50,12 +55,13 @@ pub(crate) struct Configuration {
     pub experiment: String,
     /// Times, `None` if it failed.
     pub times: Option<Times>,
+    /// Why it failed.
     pub error: Option<String>,
 }
 
 /// Times over all rounds.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Times {
+pub struct Times {
     /// Times of every pass, with settings and memory. The warm-up is the shortest of all rounds.
     pub stats: Stats,
     /// Times of every stage, ms: the sum over its passes, frame by frame.
@@ -64,6 +70,37 @@ pub(crate) struct Times {
     pub rounds: Vec<f64>,
     /// Median of every stage in every round, ms.
     pub stage_rounds: IndexMap<String, Vec<f64>>,
+}
+
+/// Warm-up on GPUs. Bounces of the graphs here gather more often until frame 77 after a change. A
+/// software device would take minutes.
+const GPU_WARMUP: usize = 128;
+/// Warm-up on software devices.
+const CPU_WARMUP: usize = 10;
+
+/// Measures every point of a sweep in each of `rounds` rounds, after this warm-up or the device's
+/// default. The points come with it.
+///
+/// # Errors
+/// Mistakes in points; a scene that is not on this machine.
+pub fn of_sweep(
+    runner: &mut Runner,
+    sweep: &Sweep,
+    rounds: usize,
+    warmup: Option<usize>,
+) -> Result<(Bench, Vec<SweepPoint>), LabError> {
+    let software = runner.lab.gpu.info.kind == "cpu";
+    let default = if software { CPU_WARMUP } else { GPU_WARMUP };
+    let frames = Frames {
+        warmup: warmup.unwrap_or(default),
+        ..sweep.frames
+    };
+    let (points, _) = list(runner, sweep, frames)?;
+    if let Some(why) = points.iter().find_map(|p| p.absent.clone()) {
+        return Err(LabError::Request(why));
+    }
+    let bench = bench(runner, sweep.names.clone(), &points, rounds, frames)?;
+    Ok((bench, points))
 }
 
 /// Rounds of a configuration so far.
@@ -89,7 +126,7 @@ pub(crate) fn bench(
     runner.tell(Progress::Begins {
         todo: points.len() * rounds,
         before: 0,
-    });
+    })?;
     let configuration = |p: &SweepPoint| Configuration {
         labels: p.labels.iter().cloned().collect(),
         size: p.experiment.size,
@@ -108,10 +145,10 @@ pub(crate) fn bench(
                 let of = (round == 0, round + 1 == rounds);
                 measure(runner, frames, (point, configuration), turns, &mut last, of)?;
             }
-            runner.tell(Progress::Finished(String::new(), Vec::new()));
+            runner.tell(Progress::Finished(String::new(), Vec::new()))?;
         }
     }
-    runner.tell(Progress::Ends);
+    runner.tell(Progress::Ends)?;
     let device = DeviceStats::of(&runner.lab.gpu.info);
     Ok(Bench {
         schema: SCHEMA.into(),

@@ -3,8 +3,8 @@
 mod run;
 mod search;
 
-pub(crate) use run::{Fitted, Goal, Request, run};
-pub(crate) use search::Found;
+pub use run::{Fitted, Goal, LEAST_GAIN, Request, run};
+pub use search::Found;
 pub use search::{Limits, Stop, Trial, search};
 
 use crate::campaign::settings::Axis;
@@ -14,7 +14,7 @@ use crate::graph::param::Params;
 use crate::lab::LabError;
 
 /// The given axes, or those that a graph declares in `fit`. Neighbouring values should be alike.
-pub(crate) fn axes(graph: &Graph, given: &[Axis]) -> Result<Vec<Axis>, LabError> {
+pub fn axes(graph: &Graph, given: &[Axis]) -> Result<Vec<Axis>, LabError> {
     let axes = if given.is_empty() {
         graph.fit.clone()
     } else {

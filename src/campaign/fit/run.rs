@@ -5,7 +5,7 @@ use super::search::{Found, Limits, Trial, search};
 use super::{at, start};
 use crate::campaign::points::{OpenScene, SweepPoint};
 use crate::campaign::record::first_line;
-use crate::campaign::runner::{Open, Progress, Runner};
+use crate::campaign::runner::{OnProgress, Open, Progress, Runner};
 use crate::campaign::settings::Axis;
 use crate::campaign::sweep::{
     Manifest, ManifestPoint, Measuring, PointRecord, points_in, write_table,
@@ -18,6 +18,9 @@ use crate::measure::{Frames, Scored, reference};
 use crate::metrics::Metric;
 use crate::results::stats::DeviceStats;
 use std::path::PathBuf;
+
+/// Gains below this part of a time or an error are taken for noise.
+pub const LEAST_GAIN: f64 = 0.01;
 
 /// The bounded quantity. The other one is minimised.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +61,7 @@ impl Goal {
     }
 }
 
+/// A search.
 pub struct Request<'a> {
     /// Experiment before any change.
     pub experiment: &'a Experiment,
@@ -117,7 +121,7 @@ pub fn run(
     open: &Open,
     open_scene: &OpenScene,
     request: &Request,
-    on_progress: &mut dyn FnMut(Progress),
+    on_progress: &mut OnProgress<'_>,
 ) -> Result<Fitted, LabError> {
     let mut runner = Runner::open(open, open_scene, on_progress)?;
     let (experiment, axes) = (request.experiment, request.axes);
@@ -135,7 +139,7 @@ pub fn run(
     runner.tell(Progress::Begins {
         todo: request.evaluations,
         before: 0,
-    });
+    })?;
     let found = search(&sizes, &first, request.limits(), &mut |place| {
         let tried = point(&mut runner, request, place)?;
         // Times of other devices do not count.
@@ -155,10 +159,10 @@ pub fn run(
             None => format!("cannot be run: {refused}"),
         };
         let (number, names) = (points.len(), names(axes, place));
-        runner.tell(Progress::Tried(format!("{number:4} {what}  {names}")));
+        runner.tell(Progress::Tried(format!("{number:4} {what}  {names}")))?;
         Ok::<_, LabError>(trial)
     })?;
-    runner.tell(Progress::Ends);
+    runner.tell(Progress::Ends)?;
     write(request, points)?;
     LabError::of_messages(runner.lab.gpu.messages().len())?;
     let why = || format!("the setting to start from cannot be run: {refused}");
@@ -197,7 +201,7 @@ fn check(
     {
         let message =
             format!("warning: an error of {bound} is within the reference's noise: raise --spp");
-        runner.tell(Progress::Note(message));
+        runner.tell(Progress::Note(message))?;
     }
     Ok(())
 }

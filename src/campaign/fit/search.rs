@@ -53,6 +53,17 @@ pub enum Stop {
     Unreachable,
 }
 
+impl Stop {
+    /// The reason, for people.
+    pub fn text(self) -> &'static str {
+        match self {
+            Stop::Local => "no setting near the Pareto front is better",
+            Stop::Evaluations => "all evaluations are used",
+            Stop::Unreachable => "no setting is within the bound",
+        }
+    }
+}
+
 /// The result of a search.
 #[derive(Clone, Debug)]
 pub struct Found {

@@ -72,7 +72,7 @@ pub(super) fn costs(
     }
     let of = ROUNDS * todo.len();
     let todo = between(&todo, &mut |job| {
-        told(runner, job, 0, of);
+        told(runner, job, 0, of)?;
         Ok((time(runner, job), time(runner, first)?.0))
     })?;
     time_all(runner, first, &todo, &mut costs)?;
@@ -172,7 +172,7 @@ fn time_all(
             if candidate.failed.is_some() {
                 continue;
             }
-            told(runner, job, round * todo.len() + i, of);
+            told(runner, job, round * todo.len() + i, of)?;
             let cost = if job.work == first.work {
                 Ok(first_cost)
             } else {
@@ -243,11 +243,11 @@ fn same(kept: &Cost, wanted: &Cost) -> bool {
         && list(kept) == list(wanted)
 }
 
-fn told(runner: &mut Runner, job: &Job, done: usize, of: usize) {
+fn told(runner: &mut Runner, job: &Job, done: usize, of: usize) -> Result<(), LabError> {
     runner.tell(Progress::Runs(format!(
         "timing {}, {done} of {of}",
         job.method
-    )));
+    )))
 }
 
 /// Stored costs. The folder is not trusted, so invalid files are ignored.

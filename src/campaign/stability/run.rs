@@ -9,7 +9,7 @@ use super::sequence::{Tracing, measure};
 use super::{chart, cost, page, table};
 use crate::campaign::points::OpenScene;
 use crate::campaign::record::{json, write_files};
-use crate::campaign::runner::{Counts, Open, Progress, Runner};
+use crate::campaign::runner::{Counts, OnProgress, Open, Runner};
 use crate::lab::{LabError, focus_of, parts_of};
 use crate::metrics::Kind;
 
@@ -20,7 +20,7 @@ pub fn run(
     open_scene: &OpenScene,
     suite: &Suite,
     options: &Options,
-    on_progress: &mut dyn FnMut(Progress),
+    on_progress: &mut OnProgress<'_>,
 ) -> Result<(Counts, Report), LabError> {
     let mut runner = Runner::open(open, open_scene, on_progress)?;
     let mut jobs = plan(&mut runner, suite, options)?;

@@ -13,8 +13,8 @@ use std::path::Path;
 
 /// Most frames of one point.
 const MAX_FRAMES: usize = 100_000;
-/// Default frames.
-const DEFAULT_FRAMES: Frames = Frames {
+/// Frames of a point where a sweep does not say.
+pub const DEFAULT_FRAMES: Frames = Frames {
     warmup: 40,
     count: 20,
 };

@@ -10,10 +10,12 @@ mod run;
 mod table;
 
 pub(crate) use super::points::Subject;
+pub use file::DEFAULT_FRAMES;
 pub(crate) use list::{check, list};
 pub use points::Sweep;
 pub(crate) use points::{NOTHING, SCENE, SET};
 pub use record::collect;
 pub(crate) use record::{Collected, Manifest, ManifestPoint, PointRecord, points_in};
-pub(crate) use run::{Measuring, Options, Shard, run, write_table};
+pub(crate) use run::{Measuring, write_table};
+pub use run::{Options, Shard, run};
 pub(crate) use table::{csv, parts_of};

@@ -7,7 +7,7 @@ use super::record::{
 };
 use crate::campaign::points::{OpenScene, SweepPoint, labelled};
 use crate::campaign::record::{File, Folder, write_file};
-use crate::campaign::runner::{Counts, Job, Open, Progress, Runner, Taken};
+use crate::campaign::runner::{Counts, Job, OnProgress, Open, Progress, Runner, Taken};
 use crate::experiment::resolved_text;
 use crate::lab::{LabError, camera_of};
 use crate::measure::reference::{Goal, Reference};
@@ -26,6 +26,7 @@ pub struct Shard {
 }
 
 impl Shard {
+    /// All points.
     pub const ALL: Shard = Shard { number: 1, of: 1 };
 }
 
@@ -98,14 +99,14 @@ pub fn run(
     open_scene: &OpenScene,
     sweep: &Sweep,
     options: &Options,
-    on_progress: &mut dyn FnMut(Progress),
+    on_progress: &mut OnProgress<'_>,
 ) -> Result<Counts, LabError> {
     let mut runner = Runner::open(open, open_scene, on_progress)?;
     let (points, equal) = list(&mut runner, sweep, options.frames)?;
     if equal > 0 {
         runner.tell(Progress::Note(format!(
             "{equal} combinations equal another one and are measured once"
-        )));
+        )))?;
     }
     let folder = points_in(&options.folder);
     folder.clean(&["points", "pictures", "errors", "references"]);
@@ -135,7 +136,7 @@ pub fn run(
     let records = runner.run(&folder, &mine, &mut kept, &mut measured)?;
     if elsewhere > 0 {
         let message = "points were measured on another device; name another folder with -o to measure them here";
-        runner.tell(Progress::Note(format!("{elsewhere} {message}")));
+        runner.tell(Progress::Note(format!("{elsewhere} {message}")))?;
     }
     write_table(&options.folder)?;
     Ok(Counts::of(&records))

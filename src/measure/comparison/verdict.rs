@@ -8,9 +8,11 @@ use std::fmt;
 /// The better of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Verdict {
+    /// The first picture is better.
     A,
     /// The second picture is better.
     B,
+    /// Both are equal.
     #[serde(rename = "equal")]
     Equal,
     /// Undecided: the difference is within the noise of the reference.

@@ -105,7 +105,7 @@ impl Tracer {
     ) -> Result<Traced, LabError> {
         let loaded = self.graph(lab)?;
         let mut traced = key::traced_by(&loaded, experiment, bounces)?;
-        let folder = lab.home.root.join("captures/reference");
+        let folder = lab.home.captures.join("reference");
         let folder = folder.join(key::key(&traced, &loaded, scene)?);
         let graph = &loaded.graph;
         let sums = store::read(&folder, traced.size, graph)?;

@@ -66,6 +66,9 @@ impl FromStr for Goal {
 }
 
 impl Goal {
+    /// Samples per pixel where nothing is asked for.
+    pub const DEFAULT_SAMPLES: u64 = 256;
+
     /// Estimated samples at the goal, in whole blocks; at most `samples` if the goal is reached.
     /// `noise` is the last known value of the bound's metric.
     pub(super) fn samples(self, samples: u64, noise: Option<f64>) -> u64 {

@@ -6,8 +6,9 @@ mod goal;
 mod key;
 mod store;
 
+pub use gather::Gathered;
+pub(crate) use gather::Tracer;
 pub use gather::gather;
-pub(crate) use gather::{Gathered, Tracer};
 pub use goal::{Goal, NoiseBound};
 pub use key::GRAPH;
 pub(crate) use key::experiment_for;
@@ -22,7 +23,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Default path length of references (bounces), enough for all light that matters.
-pub(crate) const ALL_BOUNCES: u32 = 64;
+pub const ALL_BOUNCES: u32 = 64;
 
 /// A reference picture with its light components.
 #[derive(Clone, Debug)]
@@ -78,7 +79,7 @@ pub fn find(
     let loaded = home.load(&traced.graph).map_err(LabError::Input)?;
     let key = key::key(&traced, &loaded, scene)?;
     read(
-        &home.root.join("captures/reference").join(&key),
+        &home.captures.join("reference").join(&key),
         traced.size,
         &loaded.graph,
     )

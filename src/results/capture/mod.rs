@@ -66,10 +66,7 @@ fn render(
     (frames, step): (Option<usize>, f64),
     wanted: impl FnOnce(&Graph) -> Result<Vec<Image>, LabError>,
 ) -> Result<Rendered, LabError> {
-    let home = Workspace {
-        root: folder.join(SOURCES),
-        cache: lab.home.cache.clone(),
-    };
+    let home = Workspace::with(folder.join(SOURCES), lab.home.cache.clone());
     let lab = Lab {
         home,
         gpu: lab.gpu.clone(),

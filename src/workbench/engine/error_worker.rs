@@ -14,6 +14,7 @@ use crate::results::capture::scene_hash;
 use crate::scene::Scene;
 use crate::workbench::desired::request::LightState;
 use crossbeam_channel::Receiver;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// The requested error.
@@ -201,7 +202,7 @@ impl Cache {
             (experiment, &lit),
             &format!("{subject:?}"),
             wanted,
-            &mut |_| {},
+            &mut |_| ControlFlow::Continue(()),
         )
     }
 }
