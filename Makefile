@@ -20,7 +20,7 @@ VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 CONELAB := cargo run --quiet --release --locked --
 OUT := captures/demo
 
-.PHONY: help demo view shot quick test slow check record fmt dist setup clean
+.PHONY: help demo view shot quick test slow python check record fmt dist setup clean
 
 help: ## Say what there is
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1	\2/p' $(MAKEFILE_LIST) | expand -t 14
@@ -62,10 +62,17 @@ slow: ## Run the slow suites
 	@scripts/setup.sh build run test
 	@$(RUN) $(SLOW:%=--test %) $(TESTS)
 
+python: ## Install the Python module in target/venv, and run its tests and notebooks
+	@scripts/setup.sh build run test python
+	@cargo build --release --locked
+	@python3 -m venv target/venv
+	@target/venv/bin/pip install --quiet './python[test]'
+	@target/venv/bin/pytest python/tests $(TESTS:%=-k %)
+
 check: ## Check formatting, lints, documentation, graphs, shaders and experiments
 	@scripts/setup.sh build
-	@cargo fmt --check
-	@cargo clippy --release --locked --all-targets -- -D warnings
+	@cargo fmt --all --check
+	@cargo clippy --release --locked --workspace --all-targets -- -D warnings
 	@RUSTDOCFLAGS="-D warnings" cargo doc --release --locked --no-deps
 	@$(CONELAB) check
 
@@ -76,14 +83,14 @@ record: ## Measure again what docs/results.md has tables of, and write them (hal
 	@CONELAB_BLESS=1 cargo test --release --locked --test results
 
 fmt: ## Format the source
-	@cargo fmt
+	@cargo fmt --all
 
 dist: ## Pack the program for other Linux machines
 	@scripts/setup.sh build
 	@scripts/dist.sh $(VERSION)
 
 setup: ## Install what building, running and testing need
-	@scripts/setup.sh build run test
+	@scripts/setup.sh build run test python
 
 clean: ## Remove what was built
 	@cargo clean

@@ -2,10 +2,10 @@
 # Makes this machine able to build conelab: says what is missing, installs it on Debian and Ubuntu, and prepares the
 # static shader compiler. Quick and silent when nothing is missing.
 #
-#   scripts/setup.sh [build] [run] [window] [test]
+#   scripts/setup.sh [build] [run] [window] [test] [python]
 #
 # build: C++ compiler, shader compiler. run: Vulkan loader and drivers. window: libraries of X11 and Wayland. test:
-# Vulkan validation layer, a virtual screen and the libraries of a window.
+# Vulkan validation layer, a virtual screen and the libraries of a window. python: virtual environments.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -23,6 +23,9 @@ wants build && packages+=(g++ ca-certificates)
 wants run && packages+=(libvulkan1 mesa-vulkan-drivers)
 { wants window || wants test; } && packages+=(libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0 libxcb-xkb1 libwayland-client0)
 wants test && packages+=(vulkan-validationlayers xvfb)
+# A Python of one's own, as pyenv's, needs no package.
+makes_environments() { python3 -c 'import ensurepip, venv' 2>/dev/null; }
+wants python && ! makes_environments && packages+=(python3 python3-venv)
 
 # ---------------------------------------------------------------------------------------------------- system packages
 
@@ -72,6 +75,9 @@ lacks() {
             2>/dev/null || true)
         [[ -n $layers${VK_LAYER_PATH:-}${VK_ADD_LAYER_PATH:-} ]] || echo "the Vulkan validation layer"
         command -v Xvfb >/dev/null || echo "the virtual screen 'Xvfb'"
+    fi
+    if wants python; then
+        makes_environments || echo "Python with virtual environments (venv, ensurepip)"
     fi
 }
 

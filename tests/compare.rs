@@ -277,7 +277,7 @@ fn experiments_are_scored_by_frame() {
         let times = of(picture, "GPU ms");
         assert!(times.windows(2).all(|t| t[0] <= t[1]), "{times:?}");
         let last = score(&json, "frame", i)["relmse"].as_f64().unwrap();
-        let step = of(picture, "relMSE")[4];
+        let step = of(picture, "relmse")[4];
         assert!(
             (step / last - 1.0).abs() < 1e-12,
             "{picture}: {step}, {last}"
@@ -285,7 +285,7 @@ fn experiments_are_scored_by_frame() {
         let chart = home.path().join("steps/relmse-frames.svg");
         assert!(std::fs::read_to_string(chart).unwrap().contains(picture));
     }
-    let errors = of("configs/rays.ron", "relMSE");
+    let errors = of("configs/rays.ron", "relmse");
     assert!(errors[4] < 0.7 * errors[0], "{errors:?}");
 
     let folder = tempfile::tempdir().unwrap();

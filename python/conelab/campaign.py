@@ -37,8 +37,7 @@ def _which(lab: Lab, experiments: Any) -> list[Any]:
 
     if isinstance(experiments, (str, os.PathLike, Experiment)):
         experiments = [experiments]
-    files = lambda e: os.fspath(lab._file(e, "configs"))  # noqa: E731
-    return [e._native if isinstance(e, Experiment) else files(e) for e in experiments]
+    return [e._native if isinstance(e, Experiment) else os.fspath(lab._file(e, "configs")) for e in experiments]
 
 
 def _axes(lab: Lab, axes: Mapping[str, Sequence[Any]] | None) -> list[tuple[str, list[str]]]:
@@ -57,7 +56,7 @@ def _name(lab: Lab, experiments: Any) -> str:
     return first.name if isinstance(first, Experiment) else Path(first).stem
 
 
-def points(folder: str | os.PathLike) -> pd.DataFrame:
+def points(folder: str | os.PathLike[str]) -> pd.DataFrame:
     """The table of a sweep's folder, as `Lab.sweep` returns it."""
     path = Path(folder)
     table = _frame((path / "sweep.csv").read_text())
@@ -88,7 +87,7 @@ def sweep(
     reference: int | str | None,
     frames: int | None,
     warmup: int | None,
-    folder: str | os.PathLike | None,
+    folder: str | os.PathLike[str] | None,
     again: bool,
     progress: bool | Callback,
     settings: Mapping[str, Any],
@@ -118,7 +117,7 @@ def sweep(
     return table
 
 
-def _sweep_file(lab: Lab, name: str | os.PathLike) -> Path | None:
+def _sweep_file(lab: Lab, name: str | os.PathLike[str]) -> Path | None:
     """The file of a sweep, if that is what is named."""
     path = Path(name)
     for found in (path, lab.home / path, lab.home / "configs" / "sweeps" / f"{path}.ron"):
@@ -159,7 +158,14 @@ def bench(
     """See `Lab.bench`."""
     with bar(progress) as callback:
         data, table = _conelab.run_bench(
-            lab._native, _which(lab, experiments), lab._settings(settings), _axes(lab, axes), rounds, frames, warmup, callback
+            lab._native,
+            _which(lab, experiments),
+            lab._settings(settings),
+            _axes(lab, axes),
+            rounds,
+            frames,
+            warmup,
+            callback,
         )
     result = Bench(json.loads(data), _frame(table))
     failed = [c for c in result.json["configurations"] if c["error"] is not None]
@@ -209,7 +215,7 @@ def fit(
     warmup: int,
     spp: int,
     bounces: int | None,
-    output: str | os.PathLike | None,
+    output: str | os.PathLike[str] | None,
     progress: bool | Callback,
     settings: Mapping[str, Any],
 ) -> Fit:
@@ -261,14 +267,14 @@ class Stability:
 
 def stability(
     lab: Lab,
-    suite: str | os.PathLike,
+    suite: str | os.PathLike[str],
     only: Sequence[str],
     methods: Sequence[str],
     size: tuple[int, int] | None,
     frames: int | None,
     spp: int | None,
     references: bool,
-    folder: str | os.PathLike | None,
+    folder: str | os.PathLike[str] | None,
     progress: bool | Callback,
     settings: Mapping[str, Any],
 ) -> Stability:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 
 class Error(Exception):
     """Anything that conelab cannot do; the message says what, where and what to do."""
@@ -15,7 +17,7 @@ class InputError(Error, ValueError):
             source (the line).
     """
 
-    def __init__(self, message: str, findings: list[dict] | None = None):
+    def __init__(self, message: str, findings: list[dict[str, Any]] | None = None):
         super().__init__(message)
         self.findings = findings or []
         first = next((f for f in self.findings if f["severity"] == "error"), {})
@@ -23,7 +25,7 @@ class InputError(Error, ValueError):
         self.line: int | None = first.get("line")
         self.source: str | None = first.get("source")
 
-    def __reduce__(self):
+    def __reduce__(self) -> Any:
         return type(self), (str(self), self.findings)
 
 
@@ -74,9 +76,9 @@ class CampaignError(Error):
         result: what was measured, as the call would have returned it.
     """
 
-    def __init__(self, message: str, result=None):
+    def __init__(self, message: str, result: Any = None):
         super().__init__(message)
         self.result = result
 
-    def __reduce__(self):
+    def __reduce__(self) -> Any:
         return type(self), (str(self), self.result)

@@ -16,7 +16,7 @@ import numpy as np
 from . import _conelab
 from .errors import RequestError
 from .params import Params
-from .progress import Callback, bar
+from .progress import Callback, bar, log
 from .reference import Picture, Reference
 from .render import Graph, Render
 from .ron import Camera, ron
@@ -24,8 +24,10 @@ from .score import Score
 
 if TYPE_CHECKING:
     import pandas as pd
+    from typing_extensions import Unpack
 
     from .lab import Lab
+    from .settings import Settings
 
 
 class Source:
@@ -51,7 +53,7 @@ class Experiment:
         self._native = native
         self._frames = 0
         self._last: Render | None = None
-        self._copy: tempfile.TemporaryDirectory | None = None
+        self._copy: tempfile.TemporaryDirectory[str] | None = None
         self.params = Params(self)
 
     @property
@@ -119,7 +121,7 @@ class Experiment:
         self._native.close()
         self._frames += 1
 
-    def set(self, *, progress: bool | Callback = True, **settings: Any) -> Experiment:
+    def set(self, *, progress: bool | Callback = True, **settings: Unpack[Settings]) -> Experiment:
         """Changes fields and parameters, all or none, as in `Lab.open`.
 
         Numbers that shaders read cost nothing; other parameters may compile shaders or make textures.
@@ -289,9 +291,18 @@ class Experiment:
         """The graph as it runs: passes, textures, buffers, barriers."""
         return Graph(*self._native.graph())
 
-    def save(self, path: str | os.PathLike, *, overwrite: bool = False) -> Path:
+    def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
         """Writes the experiment as a .ron file for `Lab.open` and the program: what differs from the graph's defaults."""
         self._native.save(os.fspath(path), overwrite)
+        return Path(path)
+
+    def export_scene(self, path: str | os.PathLike[str]) -> Path:
+        """Writes the scene, with the experiment's light, for another renderer: .obj, .gltf or .glb.
+
+        The logger says what the format cannot hold, as lamps in an .obj file.
+        """
+        for message in self._native.export_scene(os.fspath(path)):
+            log.warning("%s", message)
         return Path(path)
 
     def sources(self) -> list[str]:
@@ -348,7 +359,7 @@ class Experiment:
         self._copy = None
         self._frames += 1
 
-    def save_sources(self, folder: str | os.PathLike) -> Path:
+    def save_sources(self, folder: str | os.PathLike[str]) -> Path:
         """Writes graphs and shaders, with the edits, and the lab's experiments to a folder for `Lab(home=...)`."""
         target = Path(folder)
         for name in ("passes", "shaders"):

@@ -11,13 +11,15 @@ from typing import TYPE_CHECKING, Any
 from . import _conelab
 from .errors import RequestError
 from .progress import Callback, bar, log
-from .ron import Camera, setting
+from .ron import setting
 
 if TYPE_CHECKING:
     import pandas as pd
+    from typing_extensions import Unpack
 
     from .campaign import Bench, Fit, Stability
     from .experiment import Experiment
+    from .settings import Parameters, Settings
 
 #: Fields of an experiment; every other setting is a parameter of its graph.
 FIELDS = ("graph", "scene", "camera", "size", "time", "sky", "environment")
@@ -57,8 +59,8 @@ class Lab:
         self,
         device: str | int | None = None,
         *,
-        home: str | os.PathLike | None = None,
-        captures: str | os.PathLike | None = None,
+        home: str | os.PathLike[str] | None = None,
+        captures: str | os.PathLike[str] | None = None,
         validate: bool | None = None,
         without: Iterable[str] = (),
         memory: float | None = None,
@@ -121,11 +123,11 @@ class Lab:
 
     def open(
         self,
-        experiment: str | os.PathLike | Mapping[str, Any] | pd.Series,
+        experiment: str | os.PathLike[str] | Mapping[str, Any] | pd.Series,
         *,
         keep: Sequence[str] = (),
         progress: bool | Callback = True,
-        **settings: Any,
+        **settings: Unpack[Settings],
     ) -> Experiment:
         """Opens an experiment.
 
@@ -162,16 +164,16 @@ class Lab:
 
     def sweep(
         self,
-        experiments: str | os.PathLike | Experiment | Sequence[str | os.PathLike | Experiment],
+        experiments: str | os.PathLike[str] | Experiment | Sequence[str | os.PathLike[str] | Experiment],
         axes: Mapping[str, Sequence[Any]] | None = None,
         *,
         reference: int | str | None = None,
         frames: int | None = None,
         warmup: int | None = None,
-        folder: str | os.PathLike | None = None,
+        folder: str | os.PathLike[str] | None = None,
         again: bool = False,
         progress: bool | Callback = True,
-        **settings: Any,
+        **settings: Unpack[Settings],
     ) -> pd.DataFrame:
         """Measures every experiment with every combination of the axes' values: times, memory, scores of each part.
 
@@ -199,14 +201,14 @@ class Lab:
 
     def bench(
         self,
-        experiments: str | os.PathLike | Experiment | Sequence[str | os.PathLike | Experiment],
+        experiments: str | os.PathLike[str] | Experiment | Sequence[str | os.PathLike[str] | Experiment],
         axes: Mapping[str, Sequence[Any]] | None = None,
         *,
         rounds: int = 5,
         frames: int = 40,
         warmup: int | None = None,
         progress: bool | Callback = True,
-        **settings: Any,
+        **settings: Unpack[Settings],
     ) -> Bench:
         """Times configurations round by round, so that clocks and heat touch all alike.
 
@@ -227,7 +229,7 @@ class Lab:
 
     def fit(
         self,
-        experiment: str | os.PathLike | Experiment,
+        experiment: str | os.PathLike[str] | Experiment,
         axes: Mapping[str, Sequence[Any]] | None = None,
         *,
         max_error: float | None = None,
@@ -238,10 +240,10 @@ class Lab:
         frames: int = 20,
         warmup: int = 40,
         spp: int = 1024,
-        bounces: int | None = None,
-        output: str | os.PathLike | None = None,
+        reference_bounces: int | None = None,
+        output: str | os.PathLike[str] | None = None,
         progress: bool | Callback = True,
-        **settings: Any,
+        **settings: Unpack[Settings],
     ) -> Fit:
         """Searches the cheapest setting within an error, or the best within a time.
 
@@ -254,7 +256,8 @@ class Lab:
             part: part of the light.
             evaluations: settings to measure, at most.
             frames, warmup: of each setting.
-            spp, bounces: of the reference, at least.
+            spp: samples per pixel of the reference, at least.
+            reference_bounces: of the reference; 64 when absent.
             output: .ron file for the setting found; `captures/fit/NAME.ron` when absent. The trials are in the folder
                 of that name.
 
@@ -264,13 +267,13 @@ class Lab:
         from .campaign import fit
 
         return fit(
-            self, experiment, axes, max_error, max_ms, metric, part, evaluations, frames, warmup, spp, bounces, output,
+            self, experiment, axes, max_error, max_ms, metric, part, evaluations, frames, warmup, spp, reference_bounces, output,
             progress, settings,
         )  # fmt: skip
 
     def stability(
         self,
-        suite: str | os.PathLike,
+        suite: str | os.PathLike[str],
         *,
         only: Sequence[str] = (),
         methods: Sequence[str] = (),
@@ -278,9 +281,9 @@ class Lab:
         frames: int | None = None,
         spp: int | None = None,
         references: bool = True,
-        folder: str | os.PathLike | None = None,
+        folder: str | os.PathLike[str] | None = None,
         progress: bool | Callback = True,
-        **settings: Any,
+        **settings: Unpack[Parameters],
     ) -> Stability:
         """Measures temporal stability against references while cameras, objects or lights move (docs/stability.md).
 
@@ -300,9 +303,7 @@ class Lab:
         """
         from .campaign import stability
 
-        return stability(
-            self, suite, only, methods, size, frames, spp, references, folder, progress, settings
-        )
+        return stability(self, suite, only, methods, size, frames, spp, references, folder, progress, settings)
 
     def _source(self, experiment: Any) -> tuple[Path, str | None]:
         """File and text of an experiment."""
@@ -312,7 +313,7 @@ class Lab:
 
         return recorded(experiment)
 
-    def _file(self, name: str | os.PathLike, folder: str) -> Path:
+    def _file(self, name: str | os.PathLike[str], folder: str) -> Path:
         """A file as it is named, or of that name in a folder of `home`."""
         path = Path(name)
         if path.suffix == ".ron":

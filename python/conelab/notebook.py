@@ -21,8 +21,8 @@ def _control(widgets: Any, p: Param) -> Any:
     if p.kind == "choice":
         return widgets.Dropdown(options=p.options, value=p.value, **shared)
     if p.kind == "int" and p.range:
-        low, high = (int(v) for v in p.range)
-        return widgets.IntSlider(value=p.value, min=low, max=high, step=int(p.step or 1), **slider)
+        least, most = (int(v) for v in p.range)
+        return widgets.IntSlider(value=p.value, min=least, max=most, step=int(p.step or 1), **slider)
     if p.kind == "float" and p.range:
         low, high = p.range
         return widgets.FloatSlider(value=p.value, min=low, max=high, step=p.step or (high - low) / 100, **slider)

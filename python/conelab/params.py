@@ -12,6 +12,11 @@ from .errors import RequestError
 
 if TYPE_CHECKING:
     from .experiment import Experiment
+    from .settings import Attributes
+else:
+
+    class Attributes:
+        """Types for editors."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +61,7 @@ def read(text: str) -> dict[str, Param]:
     return {p["name"]: Param(**{name: frozen(value) for name, value in p.items()}) for p in json.loads(text)}
 
 
-class Params(Mapping[str, Any]):
+class Params(Attributes, Mapping[str, Any]):
     """The parameters of an experiment: `params.aperture` and `params["aperture"]` get and set values.
 
     A wrong name, kind or value raises `InputError`, names the nearest name or the range, and changes nothing.

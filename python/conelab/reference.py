@@ -33,18 +33,20 @@ class Picture:
         if kind not in KINDS:
             raise RequestError(f"no kind of picture '{kind}': there are {', '.join(KINDS)}")
         if array.dtype.kind in "ui":
-            message = "whole numbers are not linear radiance: divide, and undo the display's curve; or give a PNG's path"
+            message = (
+                "whole numbers are not linear radiance: divide, and undo the display's curve; or give a PNG's path"
+            )
             raise RequestError(message)
         self.array: np.ndarray = np.asarray(array[..., :3], dtype=np.float32)
         self.kind = kind
 
     @staticmethod
-    def read(path: str | os.PathLike) -> Picture:
+    def read(path: str | os.PathLike[str]) -> Picture:
         """Reads an .exr or .hdr file (radiance) or a .png file (sRGB, decoded to linear)."""
         kind, memory = _conelab.read_picture(os.fspath(path))
         return Picture(np.asarray(memory), kind)
 
-    def write(self, path: str | os.PathLike) -> Path:
+    def write(self, path: str | os.PathLike[str]) -> Path:
         """Writes an .exr file of 32-bit floats."""
         _conelab.write_picture(os.fspath(path), self._given())
         return Path(path)
@@ -69,7 +71,8 @@ class Picture:
         return (curve * 255.0 + 0.5).astype(np.uint8)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
-        return np.array(self.array, dtype=dtype) if copy else np.asarray(self.array, dtype=dtype)
+        array: np.ndarray[Any, Any] = np.array(self.array, dtype=dtype) if copy else np.asarray(self.array, dtype=dtype)
+        return array
 
     def __repr__(self) -> str:
         width, height = self.size

@@ -80,12 +80,12 @@ class Render:
     @property
     def gpu_ms(self) -> float:
         """Median time of a frame on the GPU, from its first to its last command, ms."""
-        return self.stats["total_gpu_ms"]["median"]
+        return float(self.stats["total_gpu_ms"]["median"])
 
     @property
     def cpu_ms(self) -> float:
         """Median time of recording and submitting a frame, ms."""
-        return self.stats["cpu_ms"]["median"]
+        return float(self.stats["cpu_ms"]["median"])
 
     @property
     def memory(self) -> pd.Series:
@@ -97,7 +97,7 @@ class Render:
     @property
     def warnings(self) -> list[str]:
         """Checks of the graph that failed in the last frame."""
-        return self.stats["warnings"]
+        return list(self.stats["warnings"])
 
     def save(self, path: str) -> Path:
         """Writes the displayed picture as a .png file, or the linear one as .exr."""
@@ -121,7 +121,7 @@ class Render:
 
     def _repr_html_(self) -> str:
         stages = "".join(
-            f"<tr><td style='text-align:left'>{html.escape(name)}</td><td>{ms:.3f}</td></tr>"
+            f"<tr><td style='text-align:left'>{html.escape(str(name))}</td><td>{ms:.3f}</td></tr>"
             for name, ms in self.stages.items()
         )
         total = f"<tr><th style='text-align:left'>GPU, {html.escape(self.stats['device']['name'])}</th><th>{self.gpu_ms:.3f} ms</th></tr>"
@@ -161,7 +161,9 @@ class Graph:
 
         data = json.loads(outline)
         self.name: str = data["graph"]
-        self.passes = pd.DataFrame(data["passes"], columns=["name", "stage", "steps", "reads", "writes"]).set_index("name")
+        self.passes = pd.DataFrame(data["passes"], columns=["name", "stage", "steps", "reads", "writes"]).set_index(
+            "name"
+        )
         self.textures = pd.DataFrame(data["textures"]).set_index("name") if data["textures"] else pd.DataFrame()
         self.buffers = pd.DataFrame(data["buffers"]).set_index("name") if data["buffers"] else pd.DataFrame()
         self.left_out: dict[str, str] = data["left_out"]

@@ -34,6 +34,7 @@ class Score:
 
     Attributes:
         json: as `conelab compare --json` writes it.
+        parts: the scored pictures, by part.
         table: a row for each part and region; columns are metrics, `share` of the frame, and the reference's noise.
     """
 
@@ -41,7 +42,7 @@ class Score:
         import pandas as pd
 
         self.json = data
-        self._parts = parts
+        self.parts = parts
         self._reference = reference
         self._name = data["pictures"][number]
         rows = []
@@ -81,7 +82,7 @@ class Score:
         given = (key,) if isinstance(key, str) else tuple(key)
         metric, part, region = given + ("", "total", "frame")[len(given) :]
         try:
-            return float(self.table.loc[(part, region), metric])
+            return float(self.table[metric][(part, region)])
         except KeyError:
             parts, regions = (", ".join(dict.fromkeys(self.table.index.get_level_values(i))) for i in (0, 1))
             message = f"no {metric} of '{part}' in '{region}'; parts: {parts}; regions: {regions}"
@@ -90,7 +91,7 @@ class Score:
     def maps(self, part: str = "total") -> dict[str, np.ndarray]:
         """Maps of the error, [height, width], float32: flip, hdrFlip, luminanceDifference (of the picture less the
         reference, radiance), relativeSquaredError, structure."""
-        given = _conelab.error_maps(self._parts[part]._given(), self._reference.parts[part]._given())
+        given = _conelab.error_maps(self.parts[part]._given(), self._reference.parts[part]._given())
         return {name: np.asarray(memory) for name, memory in given}
 
     def __repr__(self) -> str:
@@ -98,16 +99,17 @@ class Score:
         return f"<Score against {self.json['reference']}\n{total.to_string(float_format='%.4g')}>"
 
     def _repr_html_(self) -> str:
-        part = "total" if "total" in self._parts and "total" in self._reference.parts else next(iter(self._parts))
+        part = "total" if "total" in self.parts and "total" in self._reference.parts else next(iter(self.parts))
         pictures = (
-            (self._parts[part].displayed(), self._name),
+            (self.parts[part].displayed(), self._name),
             (self._reference.parts[part].displayed(), self.json["reference"]),
             (heat(self.maps(part)["flip"]), f"FLIP of the {part}, 0 (black) to 1"),
         )
         figures = "".join(
-            f"<figure style='margin:0'>{image(rgb, 320)}<figcaption>{text}</figcaption></figure>" for rgb, text in pictures
+            f"<figure style='margin:0'>{image(rgb, 320)}<figcaption>{text}</figcaption></figure>"
+            for rgb, text in pictures
         )
-        table = self.table.xs("frame", level="region").to_html(float_format="%.4g")
+        table = self.table.xs("frame", level="region").to_html(float_format="{:.4g}".format)
         return f"<div style='display:flex;gap:1em;flex-wrap:wrap'>{figures}</div>{table}"
 
 
@@ -171,7 +173,9 @@ def compare(
     second = _side(b)
     if second[0] == first[0]:
         first, second = (f"{first[0]} (A)", first[1]), (f"{second[0]} (B)", second[1])
-    against = reference if isinstance(reference, Reference) else Reference(_side(reference)[1], name=_side(reference)[0])
+    against = (
+        reference if isinstance(reference, Reference) else Reference(_side(reference)[1], name=_side(reference)[0])
+    )
     sides = dict((first, second))
     return Comparison(_compared(sides, against, masks, parts), sides, against)
 
@@ -201,7 +205,7 @@ def _compared(
     """The native comparison."""
     nothing = {"relmse": math.nan, "flip": math.nan, "structure": math.nan}
 
-    def given(name: str, parts: Mapping[str, Picture], noise: Mapping[str, Mapping[str, float]]):
+    def given(name: str, parts: Mapping[str, Picture], noise: Mapping[str, Mapping[str, float]]) -> Any:
         numbers = {part: {**nothing, **n} for part, n in noise.items() if part in parts}
         known = {part: (n["relmse"], n["flip"], n["structure"]) for part, n in numbers.items()}
         return name, {part: p._given() for part, p in parts.items()}, known
@@ -215,7 +219,8 @@ def _compared(
         flat.append((name, array.astype(bool).astype(np.uint8).tobytes()))
     pictures = [given(name, parts, {}) for name, parts in sides.items()]
     against = given(reference.name, reference.parts, reference.noise)
-    return json.loads(_conelab.compare(pictures, against, list(wanted), flat))
+    compared: dict[str, Any] = json.loads(_conelab.compare(pictures, against, list(wanted), flat))
+    return compared
 
 
 def heat(values: np.ndarray) -> np.ndarray:

@@ -671,6 +671,14 @@ impl Experiment {
         written.map(drop).map_err(|error| exception(error.into()))
     }
 
+    /// Writes the scene with the experiment's light to an .obj, .gltf or .glb file; what the format cannot hold.
+    fn export_scene(&self, py: Python<'_>, path: PathBuf) -> PyResult<Vec<String>> {
+        let state = self.own.lock()?;
+        let scene = &state.scene;
+        let written = py.detach(|| scene.export(&path));
+        written.map_err(|error| exception(error.into()))
+    }
+
     /// Takes graph and shaders from another folder, or from the lab's: all or nothing.
     #[pyo3(signature = (root))]
     fn rebase(&self, py: Python<'_>, root: Option<PathBuf>) -> PyResult<()> {

@@ -3,7 +3,7 @@
 use crate::errors::{exception, raised};
 use crate::memory::Memory;
 use crate::reference::word;
-use conelab::lab::{LabError, Texels};
+use conelab::lab::{LabError, Texels, Workspace};
 use conelab::measure::comparison::{Request, Side, compare as compared};
 use conelab::metrics::maps::layers;
 use conelab::metrics::region::Region;
@@ -42,6 +42,16 @@ pub fn devices(py: Python<'_>) -> PyResult<Vec<Device>> {
         )
     };
     Ok(list.into_iter().map(entry).collect())
+}
+
+/// Parameters of a graph as JSON, at their defaults. Needs no device.
+#[pyfunction]
+pub fn graph_params(home: PathBuf, graph: &str) -> PyResult<String> {
+    let home = Workspace::at(home).map_err(exception)?;
+    let graph = home
+        .read(graph)
+        .map_err(|list| exception(LabError::Input(list)))?;
+    Ok(crate::params::json(&graph.params))
 }
 
 /// Metrics: key, title, help, best value (NaN: none).

@@ -26,7 +26,8 @@ mod _conelab {
     use super::experiment::Experiment;
     #[pymodule_export]
     use super::functions::{
-        compare, devices, error_maps, metrics, png, read_picture, version, write_picture,
+        compare, devices, error_maps, graph_params, metrics, png, read_picture, version,
+        write_picture,
     };
     #[pymodule_export]
     use super::lab::Lab;

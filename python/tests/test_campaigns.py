@@ -28,7 +28,9 @@ def test_failed_points_raise_and_leave_the_others(lab, device, captures, tmp_pat
     with conelab.Lab(device, home=ROOT, captures=captures, memory=0.05) as little:
         options = dict(warmup=1, frames=1, folder=tmp_path / "s", progress=False)
         with pytest.raises(conelab.CampaignError, match="1 of 2 points failed") as caught:
-            little.sweep("cones", {"voxel_dim": [16, 256]}, **options, **{k: v for k, v in small.items() if k != "voxel_dim"})
+            little.sweep(
+                "cones", {"voxel_dim": [16, 256]}, **options, **{k: v for k, v in small.items() if k != "voxel_dim"}
+            )
     table = caught.value.result
     assert list(table["outcome"]) == ["done", "failed"] and "GiB" in table["error"].iloc[1]
     with pytest.raises(conelab.SceneError, match="nowhere"):

@@ -23,7 +23,9 @@ def test_a_render_is_the_commands(rays, program, small_arguments, tmp_path):
     assert np.array_equal(texels(tmp_path / "b.png"), texels(tmp_path / "a.png"))
     expected = json.loads((tmp_path / "a.json").read_text())
     times = {"passes", "total_gpu_ms", "cpu_ms"}
-    assert {k: v for k, v in shot.stats.items() if k not in times} == {k: v for k, v in expected.items() if k not in times}
+    assert {k: v for k, v in shot.stats.items() if k not in times} == {
+        k: v for k, v in expected.items() if k not in times
+    }
     assert [p["name"] for p in shot.stats["passes"]] == [p["name"] for p in expected["passes"]]
     assert shot.warnings == []
 
@@ -75,7 +77,14 @@ def test_a_sweep_has_the_numbers_of_the_command(lab, program, tmp_path):
     )
     program("sweep", sweep, "-o", tmp_path / "theirs", "--reference", 32)
     ours = lab.sweep(
-        "cones", {"exposure": [0.8, 1.2]}, warmup=1, frames=1, reference=32, folder=tmp_path / "ours", progress=False, **SMALL
+        "cones",
+        {"exposure": [0.8, 1.2]},
+        warmup=1,
+        frames=1,
+        reference=32,
+        folder=tmp_path / "ours",
+        progress=False,
+        **SMALL,
     )
     theirs = pd.read_csv(tmp_path / "theirs" / "sweep.csv")
     same = [c for c in theirs.columns if not c.endswith(" ms")]

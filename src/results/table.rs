@@ -2,6 +2,7 @@
 
 use crate::lab::LabError;
 use maud::{Markup, html};
+use std::collections::HashSet;
 use std::error::Error;
 use std::fmt::Display;
 
@@ -106,11 +107,18 @@ impl<'r, R> Table<'r, R> {
     }
 
     /// Comma-separated values (RFC 4180).
+    ///
+    /// # Errors
+    /// Two columns of one name: readers would take one for the other.
     pub fn csv(&self) -> Result<String, LabError> {
         self.records().map_err(LabError::making("the table"))
     }
 
     fn records(&self) -> Result<String, Box<dyn Error>> {
+        let mut titles = HashSet::new();
+        if let Some(column) = self.columns.iter().find(|c| !titles.insert(&c.title)) {
+            return Err(format!("two columns are called '{}'", column.title).into());
+        }
         let mut out = csv::Writer::from_writer(Vec::new());
         out.write_record(self.columns.iter().map(|c| &c.title))?;
         for i in 0..self.rows.len() {

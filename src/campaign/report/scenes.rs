@@ -6,8 +6,8 @@ use crate::campaign::points::labelled;
 use crate::campaign::record::first_line;
 use crate::campaign::sweep::Subject;
 use crate::lab::LabError;
-use crate::metrics::Metric;
-use crate::results::table::{Table, cell, short};
+use crate::metrics::{Metric, Noise};
+use crate::results::table::{Table, cell, number, short};
 use indexmap::{IndexMap, IndexSet};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
@@ -131,18 +131,19 @@ impl Scenes {
         let mut lines: Vec<Line> = Vec::new();
         for row in &self.rows {
             for (method, cell) in self.methods.iter().zip(&row.cells) {
-                let line = |(bounces, scores)| Line {
+                let line = |(bounces, scores, noise)| Line {
                     row,
                     method,
                     cell,
                     bounces,
                     scores,
+                    noise,
                 };
                 match cell {
                     Cell::Measured(i) => {
                         lines.extend(scores(data, &data.dots[*i]).into_iter().map(line))
                     }
-                    Cell::Failed(_) => lines.push(line((String::new(), None))),
+                    Cell::Failed(_) => lines.push(line((String::new(), None, None))),
                     Cell::Left => {}
                 }
             }
@@ -158,6 +159,11 @@ impl Scenes {
             table.column(metric.key, |l| {
                 cell(l.scores.and_then(|s| s.get(metric.key)))
             });
+            if let Some(of) = &metric.noise {
+                table.column(format!("{} noise", metric.key), |l| {
+                    number(l.noise.map(of.of))
+                });
+            }
         }
         table.column("median ms", |l| match l.cell {
             Cell::Measured(i) => data.dots[*i].ms.to_string(),
@@ -178,6 +184,8 @@ struct Line<'s> {
     cell: &'s Cell,
     bounces: String,
     scores: Option<&'s Scores>,
+    /// Noise of the reference.
+    noise: Option<Noise>,
 }
 
 impl Row {
@@ -223,7 +231,7 @@ impl Cell {
             img alt="error" data-dot=(i) data-kind="error_map";
             table {
                 tr { th { "bounces" } @for metric in Metric::few() { th { (metric.short()) } } }
-                @for (bounces, values) in scores(data, &data.dots[i]) {
+                @for (bounces, values, _) in scores(data, &data.dots[i]) {
                     tr {
                         td { (bounces) }
                         @for metric in Metric::few() { td { (number(values.and_then(|v| v.get(metric.key)))) } }
@@ -235,9 +243,12 @@ impl Cell {
     }
 }
 
+/// Bounces of a reference, scores against it, and its noise.
+type Scored<'d> = (String, Option<&'d Scores>, Option<Noise>);
+
 /// Scores of a point's total by the bounces of the reference, most first.
-fn scores<'d>(data: &Data, dot: &'d Dot) -> Vec<(String, Option<&'d Scores>)> {
-    let mut list: Vec<(u32, &Scores)> = Vec::new();
+fn scores<'d>(data: &Data, dot: &'d Dot) -> Vec<Scored<'d>> {
+    let mut list: Vec<(u32, &Scores, Option<Noise>)> = Vec::new();
     for (part, scores) in &dot.scores {
         // All parts are scored against the first reference. Other scores of the total name theirs.
         let bounces = match part.as_str() {
@@ -246,10 +257,10 @@ fn scores<'d>(data: &Data, dot: &'d Dot) -> Vec<(String, Option<&'d Scores>)> {
                 .strip_prefix("total, ")
                 .and_then(|rest| rest.strip_suffix(" bounces")?.parse().ok()),
         };
-        list.extend(bounces.map(|b| (b, scores)));
+        list.extend(bounces.map(|b| (b, scores, dot.noise.get(part).copied())));
     }
     list.sort_by_key(|s| std::cmp::Reverse(s.0));
     list.into_iter()
-        .map(|(bounces, scores)| (bounces.to_string(), Some(scores)))
+        .map(|(bounces, scores, noise)| (bounces.to_string(), Some(scores), noise))
         .collect()
 }

@@ -84,8 +84,15 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
     let of = |value: fn(&Stats) -> String| {
         move |r: &Row| r.point().map(|p| value(&p.stats)).unwrap_or_default()
     };
-    table.column("graph", of(|s| s.graph.clone()));
-    table.column("scene", of(|s| s.scene.clone()));
+    // An axis of that name has the values that were asked for.
+    for (name, value) in [
+        ("graph", of(|s: &Stats| s.graph.clone())),
+        ("scene", of(|s| s.scene.clone())),
+    ] {
+        if !collected.names.iter().any(|n| n == name) {
+            table.column(name, value);
+        }
+    }
     table.column("width", of(|s| s.size[0].to_string()));
     table.column("height", of(|s| s.size[1].to_string()));
     table.column("device", |r| cell(r.record.map(|r| &r.device.name)));

@@ -3,8 +3,8 @@
 use crate::campaign::charts::{Axis, Line, lines};
 use crate::lab::{LabError, Session};
 use crate::measure::comparison::{Comparison, Request, Side, compare};
-use crate::metrics::{METRICS, Scores};
-use crate::results::table::{Table, four_digits};
+use crate::metrics::{METRICS, Noise, Scores};
+use crate::results::table::{Table, four_digits, number};
 use std::path::{Path, PathBuf};
 
 /// Frames when `--frames` is absent.
@@ -19,6 +19,8 @@ pub(super) struct Step {
     /// GPU time of all frames so far, ms; all parts are computed.
     gpu_ms: f64,
     scores: Scores,
+    /// Noise of the reference, if known.
+    noise: Option<Noise>,
 }
 
 /// 1, 2, 4 and so on, and the last frame.
@@ -54,6 +56,7 @@ pub(super) fn steps(
             frames,
             gpu_ms,
             scores,
+            noise: reference.noise.get(part).copied(),
         }));
     }
     Ok(out)
@@ -72,7 +75,12 @@ pub(super) fn write(folder: &Path, part: &str, steps: &[Step]) -> Result<Vec<Pat
     table.column("frames", |s| s.frames.to_string());
     table.column("GPU ms", |s| s.gpu_ms.to_string());
     for metric in METRICS {
-        table.column(metric.title, |s| s.scores.get(metric.key).to_string());
+        table.column(metric.key, |s| s.scores.get(metric.key).to_string());
+        if let Some(of) = &metric.noise {
+            table.column(format!("{} noise", metric.key), |s| {
+                number(s.noise.map(of.of))
+            });
+        }
     }
     let mut files = vec![("frames.csv".to_string(), table.csv()?)];
     let marks: Vec<f64> = measured_frames(steps.iter().map(|s| s.frames).max().unwrap_or(1))
