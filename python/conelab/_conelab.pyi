@@ -116,8 +116,9 @@ def run_bench(
     rounds: int,
     frames_: int,
     warmup: int | None,
+    folder: _Path,
     progress: _Progress,
-) -> tuple[str, str]: ...
+) -> None: ...
 def run_fit(
     lab: Lab,
     experiment: Any,

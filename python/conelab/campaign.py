@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from .experiment import Experiment
     from .lab import Lab
 
-#: Column of tables with the file of a point, from which `Lab.open` opens what was measured.
+#: Column of tables with the record of a row, from which `Lab.open` opens what was measured: a JSON file, and after `#`
+#: the number of a configuration in it.
 RECORD = "record"
 
 
@@ -67,17 +68,19 @@ def points(folder: str | os.PathLike[str]) -> pd.DataFrame:
 def recorded(row: Any) -> tuple[Path, str]:
     """File and text of the experiment of a table's row."""
     try:
-        record = Path(row[RECORD])
+        file, _, number = str(row[RECORD]).partition("#")
     except (KeyError, TypeError, IndexError):
         message = f"an experiment is a name, a path, or a row with the column '{RECORD}', not {type(row).__name__}"
         raise RequestError(message) from None
+    path = Path(file)
     try:
-        text = json.loads(record.read_text())["experiment"]
-    except (OSError, ValueError, KeyError) as why:
+        record = json.loads(path.read_text())
+        text = record["configurations"][int(number)]["text"] if number else record["experiment"]
+    except (OSError, ValueError, LookupError) as why:
         raise RequestError(f"the record of the row cannot be read: {why}") from None
     if not text:
         raise RequestError("the point of this row was not measured: its scene was not on the machine")
-    return record.parent.parent / "experiment.ron", text
+    return (path.parent if number else path.parent.parent) / "experiment.ron", text
 
 
 def sweep(
@@ -130,13 +133,25 @@ class Bench:
     """Times of configurations.
 
     Attributes:
-        table: a row for each configuration and pass, stage or total, as `bench.csv` (docs/sweeps.md).
+        table: a row for each configuration and pass, stage or total, as `bench.csv` (docs/tables.md). `lab.open(row)`
+            opens a configuration.
         json: as `bench.json`.
+        folder: with both files.
     """
 
-    def __init__(self, data: dict[str, Any], table: pd.DataFrame):
-        self.json = data
-        self.table = table
+    def __init__(self, folder: Path):
+        self.folder = folder
+        self.json: dict[str, Any] = json.loads((folder / "bench.json").read_text())
+        self.table = _frame((folder / "bench.csv").read_text())
+        file = (folder / "bench.json").absolute()
+        numbers = [
+            number
+            for number, c in enumerate(self.json["configurations"])
+            for _ in range(
+                1 if c["times"] is None else len(c["times"]["stats"]["passes"]) + len(c["times"]["stages"]) + 1
+            )
+        ]
+        self.table = self.table.assign(**{RECORD: [f"{file}#{number}" for number in numbers]})
 
     def __repr__(self) -> str:
         return f"<Bench on {self.json['device']['name']}\n{self.table.to_string()}>"
@@ -152,12 +167,14 @@ def bench(
     rounds: int,
     frames: int,
     warmup: int | None,
+    folder: str | os.PathLike[str] | None,
     progress: bool | Callback,
     settings: Mapping[str, Any],
 ) -> Bench:
     """See `Lab.bench`."""
+    target = Path(folder) if folder is not None else lab.captures / "bench" / _name(lab, experiments)
     with bar(progress) as callback:
-        data, table = _conelab.run_bench(
+        _conelab.run_bench(
             lab._native,
             _which(lab, experiments),
             lab._settings(settings),
@@ -165,9 +182,10 @@ def bench(
             rounds,
             frames,
             warmup,
+            os.fspath(target),
             callback,
         )
-    result = Bench(json.loads(data), _frame(table))
+    result = Bench(target)
     failed = [c for c in result.json["configurations"] if c["error"] is not None]
     if failed:
         raise CampaignError(f"{len(failed)} configurations failed; the first: {failed[0]['error']}", result)
@@ -248,14 +266,17 @@ class Stability:
     """Temporal stability of methods.
 
     Attributes:
-        cases: a row for each method in a case and part of the light, as `stability.csv` (docs/stability.md).
+        cases: a row for each method in a case, as `stability.csv` (docs/tables.md). `lab.open(row)` opens the method
+            where the case's motion starts.
         frames: a row for each frame, as `frames.csv`.
         folder: with `index.html`, a page of charts and pictures.
     """
 
     def __init__(self, folder: Path):
         self.folder = folder
-        self.cases = _frame((folder / "stability.csv").read_text())
+        report = json.loads((folder / "stability.json").read_text())
+        records = [str((folder / "results" / f"{r['id']}.json").absolute()) for r in report["results"]]
+        self.cases = _frame((folder / "stability.csv").read_text()).copy().assign(**{RECORD: records})
         self.frames = _frame((folder / "frames.csv").read_text())
 
     def __repr__(self) -> str:

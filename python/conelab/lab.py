@@ -207,6 +207,7 @@ class Lab:
         rounds: int = 5,
         frames: int = 40,
         warmup: int | None = None,
+        folder: str | os.PathLike[str] | None = None,
         progress: bool | Callback = True,
         **settings: Unpack[Settings],
     ) -> Bench:
@@ -218,14 +219,15 @@ class Lab:
             rounds: how often each is measured.
             frames: timed frames of a round.
             warmup: frames before them; 128 when absent, on software devices 10.
+            folder: for `bench.json` and `bench.csv`; `captures/bench/NAME` when absent.
             settings: of every configuration.
 
         Returns:
-            `Bench` with `table` (a row for each configuration and pass, stage or total) and `json`; see docs/sweeps.md.
+            `Bench` with `table`, a row for each configuration and pass, stage or total (docs/tables.md), and `json`.
         """
         from .campaign import bench
 
-        return bench(self, experiments, axes, rounds, frames, warmup, progress, settings)
+        return bench(self, experiments, axes, rounds, frames, warmup, folder, progress, settings)
 
     def fit(
         self,

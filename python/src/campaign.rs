@@ -5,7 +5,7 @@ use crate::errors::{exception, raised};
 use crate::experiment::{Experiment, settled};
 use crate::lab::{Lab, open_scene};
 use crate::progress::Reporter;
-use conelab::campaign::bench::{csv, of_sweep};
+use conelab::campaign::bench::{of_sweep, write};
 use conelab::campaign::fit;
 use conelab::campaign::runner::{Counts, OnProgress, Runner};
 use conelab::campaign::stability::{self, Suite};
@@ -130,9 +130,9 @@ pub fn run_sweep(
     Ok((done, failed))
 }
 
-/// Times experiments with axes round by round; JSON (`bench.json`) and a table (`bench.csv`).
+/// Times experiments with axes round by round; writes `bench.json`, `bench.csv` and charts to a folder.
 #[pyfunction]
-#[pyo3(signature = (lab, experiments, settings, axes, rounds, frames_, warmup, progress))]
+#[pyo3(signature = (lab, experiments, settings, axes, rounds, frames_, warmup, folder, progress))]
 #[expect(clippy::too_many_arguments, reason = "the options of a benchmark")]
 pub fn run_bench(
     py: Python<'_>,
@@ -143,8 +143,9 @@ pub fn run_bench(
     rounds: usize,
     frames_: usize,
     warmup: Option<usize>,
+    folder: PathBuf,
     progress: Option<Bound<'_, PyAny>>,
-) -> PyResult<(String, String)> {
+) -> PyResult<()> {
     if rounds == 0 || frames_ == 0 {
         return Err(raised(
             "RequestError",
@@ -158,9 +159,8 @@ pub fn run_bench(
     let sweep = Sweep::of(setups(experiments, &settings)?, &axes, before).map_err(exception)?;
     run(py, lab.get(), progress, |open, on_progress| {
         let mut runner = Runner::open(open, &open_scene, on_progress)?;
-        let bench = of_sweep(&mut runner, &sweep, rounds, warmup)?.0;
-        let json = serde_json::to_string(&bench).map_err(LabError::making("JSON"))?;
-        Ok((json, csv(&bench)?))
+        let bench = of_sweep(&mut runner, &sweep, rounds, warmup, &folder)?.0;
+        write(&folder, &bench).map(drop)
     })
 }
 

@@ -57,10 +57,14 @@ def test_a_sweep_that_is_stopped_goes_on_where_it_was(lab, tmp_path):
     assert all(path.stat().st_mtime_ns == at for path, at in records.items())
 
 
-def test_a_bench_has_stages_and_totals(lab):
-    result = lab.bench("cones", {"exposure": [0.0, 1.0]}, rounds=2, frames=2, warmup=1, progress=False, **SMALL)
+def test_a_bench_has_stages_and_totals_and_opens_its_rows(lab, tmp_path):
+    options = dict(rounds=2, frames=2, warmup=1, folder=tmp_path / "b", progress=False)
+    result = lab.bench("cones", {"exposure": [0.0, 1.0]}, **options, **SMALL)
     assert len(result.json["configurations"]) == 2 and {"pass", "stage", "total"} == set(result.table["kind"])
     assert all(c["times"]["rounds"] for c in result.json["configurations"])
+    totals = result.table[result.table["kind"] == "total"]
+    assert [lab.open(row, progress=False).params.exposure for _, row in totals.iterrows()] == [0.0, 1.0]
+    assert list(totals["exposure"]) == [0.0, 1.0]
 
 
 def test_a_fit_finds_a_setting_within_the_bound_and_opens_it(lab, tmp_path):
@@ -85,4 +89,6 @@ def test_stability_has_cases_and_frames(lab, tmp_path):
     result = lab.stability(suite, folder=tmp_path / "out", progress=False)
     assert set(result.cases["method"]) == {"cones"} and len(result.frames) >= 3
     assert (result.folder / "index.html").is_file()
+    exp = lab.open(result.cases.iloc[0], progress=False)
+    assert exp.graph_name == "cones.ron" and exp.params.voxel_dim == 16
     assert np.isfinite(result.frames.select_dtypes("number")).any().any()

@@ -1,5 +1,6 @@
 """Errors are clear, and nothing is lost."""
 
+import _thread
 import logging
 import os
 import pickle
@@ -144,6 +145,9 @@ def test_ctrl_c_ends_between_frames_and_a_callback_may_too(rays):
 
     with pytest.raises(KeyboardInterrupt):
         rays.render(progress=stop)
+    threading.Timer(0.3, _thread.interrupt_main).start()
+    with pytest.raises(KeyboardInterrupt):
+        rays.render(frames=100_000, progress=False)
     seen = []
     rays.render(frames=3, progress=lambda *step: seen.append(step))
     assert seen[-1] == ("frames", 3, 3, None)

@@ -1,6 +1,7 @@
 """Every column of every table is in docs/tables.md, and no two have one name."""
 
 import csv
+import json
 import re
 
 from conftest import ROOT, SMALL
@@ -43,12 +44,19 @@ def check(path, heading, settings=(), passes=()):
     assert not missing, f"{heading}: {path} does not have {missing}"
 
 
+def check_json(path, heading):
+    """Fields of a file are those of a section."""
+    assert sorted(json.loads(path.read_text())) == sorted(documented(heading))
+
+
 def test_columns_of_sweeps_and_reports_are_documented(lab, program, tmp_path):
     options = dict(warmup=1, frames=1, reference=32, folder=tmp_path / "s", progress=False, size=(48, 32))
     axes = {"scene": ["cornell", "pocket"], "exposure": [0.0, 1.0]}
     table = lab.sweep(["cones", "rays"], axes, shadow_dim=256, voxel_dim=16, **options)
     passes = {c.removesuffix(" ms") for c in table.columns if c.endswith(" ms")}
     check(tmp_path / "s" / "sweep.csv", "`sweep.csv`, `points.csv`", ["exposure"], passes)
+    check_json(tmp_path / "s" / "sweep.json", "`sweep.json`")
+    check_json(next((tmp_path / "s" / "points").iterdir()), "`points/ID.json`")
     program("report", tmp_path / "s", "-o", tmp_path / "r")
     check(tmp_path / "r" / "points.csv", "`sweep.csv`, `points.csv`", ["exposure"], passes)
     check(tmp_path / "r" / "scenes.csv", "`scenes.csv`")
@@ -62,11 +70,15 @@ def test_columns_of_benchmarks_suites_and_comparisons_are_documented(program, sm
         "--rounds", 1, "--frames", 1, "--warmup", 0, "-o", tmp_path / "b",
     )  # fmt: skip
     check(tmp_path / "b" / "bench.csv", "`bench.csv`", ["exposure", "voxel_dim", "shadow_dim"])
+    check_json(tmp_path / "b" / "bench.json", "`bench.json`")
     program(
         "stability", "configs/stability/families.ron", "--size", "48x32", "--frames", 3, "--spp", 32, "--only", "switch",
         "--methods", "cones", *small, "-o", tmp_path / "t",
     )  # fmt: skip
     check(tmp_path / "t" / "stability.csv", "`stability.csv`")
+    check_json(tmp_path / "t" / "stability.json", "`stability.json`, `results/ID.json`")
+    program("graph", "configs/rays.ron", "--json", tmp_path / "g.json")
+    check_json(tmp_path / "g.json", "`conelab graph --json`")
     check(tmp_path / "t" / "frames.csv", "`frames.csv` of a suite")
     program("reference", "configs/rays.ron", *small_arguments, "--spp", 32)
     program("compare", "configs/rays.ron", *small_arguments, "--frames", 2, "--by-frame", tmp_path / "f")

@@ -3,8 +3,8 @@
 use super::points::{Labels, OpenScene, PointBuilder, SweepPoint};
 use super::record::{File, Folder, Outcome, Record};
 use crate::diagnostics::Diagnostic;
-use crate::experiment::Experiment;
-use crate::lab::{Lab, LabError};
+use crate::experiment::{Experiment, resolved_text};
+use crate::lab::{Lab, LabError, camera_of};
 use crate::measure::reference::{Gathered, Reference};
 use crate::measure::{Frames, Wanted, Warm};
 use crate::results::stats::DeviceStats;
@@ -13,6 +13,7 @@ use crate::vulkan::VulkanError;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Progress of a campaign.
@@ -147,6 +148,23 @@ impl<'a> Runner<'a> {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(LabError::Stopped),
         }
+    }
+
+    /// An experiment as text with all fields and without defaults, as if it were a file of this
+    /// folder.
+    ///
+    /// # Errors
+    /// Mistakes in the experiment or its graph.
+    pub fn resolved(
+        &mut self,
+        experiment: &Experiment,
+        scene: &Scene,
+        folder: &Path,
+    ) -> Result<String, LabError> {
+        let graph = self.warm.graph(&self.lab.home, &experiment.graph)?;
+        let (params, camera) = (&graph.graph.params, camera_of(experiment, scene)?);
+        let file = folder.join("experiment.ron");
+        Ok(resolved_text(experiment, params, &camera, scene, &file)?)
     }
 
     /// A reference, see [`Warm::reference`].

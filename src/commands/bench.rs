@@ -4,11 +4,11 @@ use super::DeviceArgs;
 use super::adapt::{check_frames, parse_size};
 use super::campaign_bar::bar;
 use crate::campaign::bench::{
-    Bench, Compared, Record, Recorded, against_text, bench, charts, compare, csv, of_sweep,
-    percent, record_file, slower, text,
+    Bench, Compared, Record, Recorded, against_text, bench, compare, of_sweep, percent,
+    record_file, slower, text, write,
 };
 use crate::campaign::points::SweepPoint;
-use crate::campaign::record::{json, write_file, write_files};
+use crate::campaign::record::{json, write_file};
 use crate::campaign::runner::Runner;
 use crate::campaign::settings::axis;
 use crate::campaign::sweep::Sweep;
@@ -101,9 +101,10 @@ fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
         .as_ref()
         .map(|path| super::writable(path, &["json"]))
         .transpose()?;
-    let (result, points) = of_sweep(&mut runner, &sweep, rounds, args.warmup)?;
+    let folder = folder(args, &home, &sweep.name);
+    let (result, points) = of_sweep(&mut runner, &sweep, rounds, args.warmup, &folder)?;
     say_part!("{}", text(&result));
-    write(args, &home, &sweep.name, &result)?;
+    keep(&folder, &result)?;
     super::validated(&runner.lab)?;
     let failed = result
         .configurations
@@ -178,7 +179,7 @@ fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
     let stem = path
         .file_stem()
         .map_or("against".into(), |s| s.to_string_lossy());
-    write(args, &home, &stem, &result)?;
+    keep(&folder(args, &home, &stem), &result)?;
     super::validated(&runner.lab)?;
     verdict(args.tolerance, broken.len(), &compared)
 }
@@ -303,27 +304,17 @@ fn again<'r>(runner: &mut Runner, chosen: Vec<&'r Recorded>, frames: Frames) -> 
     out
 }
 
+/// Folder of the numbers and charts.
+fn folder(args: &BenchArgs, home: &Workspace, name: &str) -> PathBuf {
+    let own = || home.root.join("captures/bench").join(name);
+    args.output.clone().unwrap_or_else(own)
+}
+
 /// Writes numbers and charts.
-fn write(args: &BenchArgs, home: &Workspace, name: &str, result: &Bench) -> Result<(), LabError> {
-    let folder = args
-        .output
-        .clone()
-        .unwrap_or_else(|| home.root.join("captures/bench").join(name));
-    let mut files = vec![
-        ("bench.json".to_string(), json(result)?),
-        ("bench.csv".into(), csv(result)?.into_bytes()),
-    ];
-    files.extend(
-        charts(result)?
-            .into_iter()
-            .map(|(name, svg)| (format!("{name}.svg"), svg.into_bytes())),
-    );
-    write_files(&folder, &files)?;
-    say!(
-        "wrote {} files to {}",
-        files.len(),
-        super::shown(&folder).display()
-    );
+fn keep(folder: &Path, result: &Bench) -> Result<(), LabError> {
+    let files = write(folder, result)?;
+    let folder = super::shown(folder);
+    say!("wrote {files} files to {}", folder.display());
     Ok(())
 }
 

@@ -8,13 +8,12 @@ mod tables;
 
 pub(crate) use against::{Compared, against_text, compare, percent, slower};
 pub use against::{Verdict, judge};
-pub(crate) use charts::charts;
 pub use record::Record;
 pub(crate) use record::{Recorded, check_record, record_file};
-pub use tables::csv;
 pub(crate) use tables::text;
 
 use crate::campaign::points::SweepPoint;
+use crate::campaign::record::{json, write_files};
 use crate::campaign::runner::{Progress, Runner};
 use crate::campaign::sweep::{Sweep, list};
 use crate::graph::run::FrameTimes;
@@ -23,6 +22,7 @@ use crate::measure::{Frames, Timed, timed};
 use crate::results::stats::{self, DeviceStats, Spread, Stats, spread};
 use indexmap::IndexMap;
 use serde::Serialize;
+use std::path::Path;
 
 /// Version of the JSON file.
 pub(crate) const SCHEMA: &str = "conelab-bench-1";
@@ -53,6 +53,8 @@ pub struct Configuration {
     pub size: (u32, u32),
     /// Name of its experiment.
     pub experiment: String,
+    /// Its experiment with all fields, as text; empty where it is that of a record.
+    pub text: String,
     /// Times, `None` if it failed.
     pub times: Option<Times>,
     /// Why it failed.
@@ -79,7 +81,7 @@ const GPU_WARMUP: usize = 128;
 const CPU_WARMUP: usize = 10;
 
 /// Measures every point of a sweep in each of `rounds` rounds, after this warm-up or the device's
-/// default. The points come with it.
+/// default. The points come with it. The texts of experiments are as if they were files of `folder`.
 ///
 /// # Errors
 /// Mistakes in points; a scene that is not on this machine.
@@ -88,6 +90,7 @@ pub fn of_sweep(
     sweep: &Sweep,
     rounds: usize,
     warmup: Option<usize>,
+    folder: &Path,
 ) -> Result<(Bench, Vec<SweepPoint>), LabError> {
     let software = runner.lab.gpu.info.kind == "cpu";
     let default = if software { CPU_WARMUP } else { GPU_WARMUP };
@@ -99,8 +102,29 @@ pub fn of_sweep(
     if let Some(why) = points.iter().find_map(|p| p.absent.clone()) {
         return Err(LabError::Request(why));
     }
-    let bench = bench(runner, sweep.names.clone(), &points, rounds, frames)?;
+    let mut bench = bench(runner, sweep.names.clone(), &points, rounds, frames)?;
+    for (configuration, point) in bench.configurations.iter_mut().zip(&points) {
+        configuration.text = runner.resolved(&point.experiment, &point.scene, folder)?;
+    }
     Ok((bench, points))
+}
+
+/// Writes `bench.json`, `bench.csv` and charts to a folder; the number of files.
+///
+/// # Errors
+/// A folder that cannot be written to.
+pub fn write(folder: &Path, bench: &Bench) -> Result<usize, LabError> {
+    let mut files = vec![
+        ("bench.json".to_string(), json(bench)?),
+        ("bench.csv".into(), tables::csv(bench)?.into_bytes()),
+    ];
+    files.extend(
+        charts::charts(bench)?
+            .into_iter()
+            .map(|(name, svg)| (format!("{name}.svg"), svg.into_bytes())),
+    );
+    write_files(folder, &files)?;
+    Ok(files.len())
 }
 
 /// Rounds of a configuration so far.
@@ -131,6 +155,7 @@ pub(crate) fn bench(
         labels: p.labels.iter().cloned().collect(),
         size: p.experiment.size,
         experiment: p.experiment.name.clone(),
+        text: String::new(),
         times: None,
         error: None,
     };

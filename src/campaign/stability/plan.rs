@@ -265,8 +265,9 @@ impl runner::Job for Job {
         )
     }
 
-    fn about(&self, _: &mut Runner, _: &Folder) -> Result<About, LabError> {
+    fn about(&self, runner: &mut Runner, folder: &Folder) -> Result<About, LabError> {
         Ok(About {
+            experiment: runner.resolved(&self.experiment, &self.scene, &folder.path)?,
             case: self.case.name.clone(),
             variant: self.case.variant.clone(),
             text: self.case.about.clone(),

@@ -128,6 +128,9 @@ pub struct About {
     pub motion: String,
     /// Name of the method.
     pub method: String,
+    /// The experiment with all fields where the motion starts, as text.
+    #[serde(default)]
+    pub experiment: String,
     pub scene: String,
     /// Width and height, pixels.
     pub size: [u32; 2],

@@ -8,8 +8,7 @@ use super::record::{
 use crate::campaign::points::{OpenScene, SweepPoint, labelled};
 use crate::campaign::record::{File, Folder, write_file};
 use crate::campaign::runner::{Counts, Job, OnProgress, Open, Progress, Runner, Taken};
-use crate::experiment::resolved_text;
-use crate::lab::{LabError, camera_of};
+use crate::lab::LabError;
 use crate::measure::reference::{Goal, Reference};
 use crate::measure::{Frames, Point, Scored, Wanted, measure};
 use std::collections::BTreeMap;
@@ -65,21 +64,7 @@ impl Job for SweepPoint {
         let experiment = match &self.absent {
             // Camera and light are unknown.
             Some(_) => String::new(),
-            None => {
-                let params = &runner
-                    .warm
-                    .graph(&runner.lab.home, &self.experiment.graph)?
-                    .graph
-                    .params;
-                let camera = camera_of(&self.experiment, &self.scene)?;
-                resolved_text(
-                    &self.experiment,
-                    params,
-                    &camera,
-                    &self.scene,
-                    &folder.path.join("experiment.ron"),
-                )?
-            }
+            None => runner.resolved(&self.experiment, &self.scene, &folder.path)?,
         };
         Ok(About {
             experiment,
