@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -35,7 +36,8 @@ def bar(wanted: bool | Callback) -> Iterator[Callback | None]:
             if shown is not None:
                 shown.close()
             shown = tqdm(total=of, leave=False, delay=0.5)
-        shown.set_description(text[:40], refresh=False)
+        # Titles of points begin with their identifier.
+        shown.set_description(re.sub("^[0-9a-f]{32} ", "", text)[:40], refresh=False)
         shown.update(done - shown.n)
 
     try:
