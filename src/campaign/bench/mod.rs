@@ -30,7 +30,7 @@ pub(crate) const SCHEMA: &str = "conelab-bench-1";
 /// The measurements of a benchmark.
 #[derive(Clone, Debug, Serialize)]
 pub struct Bench {
-    /// [`SCHEMA`].
+    /// `conelab-bench-1`.
     pub schema: String,
     /// The device.
     pub device: DeviceStats,
