@@ -693,6 +693,8 @@ impl Experiment {
                 .load_for(setup, &state.scene, info)
                 .map_err(LabError::Input)?;
             state.home = home;
+            // Equal parameters would keep a session with the shaders before the edit.
+            state.leave();
             let changed = state.change(lab, state.setup.clone(), loaded, state.unlit.clone());
             if changed.is_err() {
                 state.home = before;

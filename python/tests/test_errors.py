@@ -72,9 +72,12 @@ def test_an_edit_is_of_this_experiment_alone(lab, rays):
     with rays.edit(file) as source:
         assert "return" in source.text
         source.text = source.text.replace("return ", "return 0.5 * ", 1)
-    after = rays.render(progress=False).picture
+    after = rays.render(progress=False).picture.copy()
     assert after.mean() < before.mean()
     assert (ROOT / "shaders" / file).read_text() == original
+    with rays.edit(file) as source:
+        source.text = source.text.replace("return 0.5 * ", "return 0.1 * ", 1)
+    assert rays.render(progress=False).picture.mean() < after.mean(), "a second edit counts too"
     other = lab.open("rays", progress=False, **SMALL)
     assert np.array_equal(other.render(progress=False).picture, before)
     with pytest.raises(conelab.RequestError, match="edited sources"):
