@@ -214,7 +214,7 @@ fn equal_settings_of_a_and_b_differ_in_no_bit() {
     let mut lit = LightState::of(&scene("cornell"));
     lit.lights[0].color *= 0.5;
     let mut number = 0;
-    // Of other families, one is enough: the window does the same with each.
+    // One of the other families is enough: the window does the same with each.
     let quick = |case: &Experiment| {
         ![
             "ddgi.ron",

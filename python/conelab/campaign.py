@@ -50,7 +50,7 @@ def _axes(lab: Lab, axes: Mapping[str, Sequence[Any]] | None) -> list[tuple[str,
     return [(name, values(name, given)) for name, given in (axes or {}).items()]
 
 
-def _name(lab: Lab, experiments: Any) -> str:
+def _name(experiments: Any) -> str:
     from .experiment import Experiment
 
     first = experiments if isinstance(experiments, (str, os.PathLike, Experiment)) else next(iter(experiments))
@@ -99,7 +99,7 @@ def sweep(
     file = None
     if isinstance(experiments, (str, os.PathLike)) and not axes and not settings:
         file = _sweep_file(lab, experiments)
-    target = Path(folder) if folder is not None else lab.captures / "sweeps" / _name(lab, file or experiments)
+    target = Path(folder) if folder is not None else lab.captures / "sweeps" / _name(file or experiments)
     with bar(progress) as callback:
         done, failed = _conelab.run_sweep(
             lab._native,
@@ -172,7 +172,7 @@ def bench(
     settings: Mapping[str, Any],
 ) -> Bench:
     """See `Lab.bench`."""
-    target = Path(folder) if folder is not None else lab.captures / "bench" / _name(lab, experiments)
+    target = Path(folder) if folder is not None else lab.captures / "bench" / _name(experiments)
     with bar(progress) as callback:
         _conelab.run_bench(
             lab._native,
@@ -238,7 +238,7 @@ def fit(
     settings: Mapping[str, Any],
 ) -> Fit:
     """See `Lab.fit`."""
-    path = Path(output) if output is not None else lab.captures / "fit" / f"{_name(lab, experiment)}.ron"
+    path = Path(output) if output is not None else lab.captures / "fit" / f"{_name(experiment)}.ron"
     if path.suffix != ".ron":
         raise RequestError(f"'{path}': give it a name that ends in .ron")
     with bar(progress) as callback:

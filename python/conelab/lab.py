@@ -143,7 +143,7 @@ class Lab:
         Raises:
             InputError: unknown names (with the nearest), wrong kinds, values out of range; mistakes in its files.
             ShaderError: mistakes in its shaders.
-            SceneError: the scene cannot be read.
+            SceneError: there is no such scene, or it cannot be read.
         """
         from .experiment import Experiment
 

@@ -61,7 +61,7 @@ class Score:
                         "share": region["share"],
                         **(scores or {}),
                         **{name: math.nan if value is None else value for name, value in noise.items()},
-                        "within noise": region["within_noise"][number],
+                        "relmse within noise": region["within_noise"][number],
                     }
                 )
         self.table = pd.DataFrame(rows).set_index(["part", "region"])
@@ -167,15 +167,11 @@ def compare(
         reference = owner.reference()
     first = _side(a)
     if reference is None:
-        name, given = _side(b)
-        against = b if isinstance(b, Reference) else Reference(given, name=name)
-        return Score.of(first[0], first[1], against, masks, parts)
+        return Score.of(first[0], first[1], _against(b), masks, parts)
     second = _side(b)
     if second[0] == first[0]:
         first, second = (f"{first[0]} (A)", first[1]), (f"{second[0]} (B)", second[1])
-    against = (
-        reference if isinstance(reference, Reference) else Reference(_side(reference)[1], name=_side(reference)[0])
-    )
+    against = _against(reference)
     sides = dict((first, second))
     return Comparison(_compared(sides, against, masks, parts), sides, against)
 
@@ -194,6 +190,14 @@ def _side(of: Any) -> tuple[str, dict[str, Picture]]:
         return "picture", {name: picture(p) for name, p in of.items()}
     name = str(of) if isinstance(of, str) or hasattr(of, "__fspath__") else "picture"
     return name, {"total": picture(of)}
+
+
+def _against(of: Any) -> Reference:
+    """What others are compared with. An experiment renders once for it."""
+    if isinstance(of, Reference):
+        return of
+    name, parts = _side(of)
+    return Reference(parts, name=name)
 
 
 def _compared(

@@ -20,7 +20,7 @@ use conelab::measure::reference::{ALL_BOUNCES, Goal, NoiseBound, gather};
 use conelab::results::stats;
 use conelab::scene::Scene;
 use pyo3::Bound;
-use pyo3::prelude::{Py, PyAny, PyRef, PyResult, Python, pyclass, pymethods};
+use pyo3::prelude::{Py, PyAny, PyResult, Python, pyclass, pymethods};
 use pyo3::types::PyDict;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -95,7 +95,7 @@ impl State {
         Ok(self.session.insert(session))
     }
 
-    /// Leaves the session, but for what the next one can use.
+    /// Leaves the session, except for parts that the next one can use.
     fn leave(&mut self) {
         self.left = self.session.take().map(|s| s.share()).or(self.left.take());
     }
@@ -664,7 +664,7 @@ impl Experiment {
         ))
     }
 
-    /// Writes the experiment to a file: what differs from the graph's defaults.
+    /// Writes the experiment to a file, without the graph's defaults.
     fn save(&self, path: PathBuf, overwrite: bool) -> PyResult<()> {
         let state = self.own.lock()?;
         let written = write(&state.setup, &state.loaded.graph.params, &path, overwrite);
@@ -707,12 +707,6 @@ impl Experiment {
     #[getter]
     fn root(&self) -> PyResult<PathBuf> {
         Ok(self.own.lock()?.home.root.clone())
-    }
-
-    #[getter]
-    fn lab<'py>(slf: &Bound<'py, Self>) -> Py<Lab> {
-        let this: PyRef<'py, Experiment> = slf.borrow();
-        this.lab.clone_ref(slf.py())
     }
 }
 

@@ -142,7 +142,7 @@ impl<'a> Runner<'a> {
     /// Tells progress.
     ///
     /// # Errors
-    /// Whoever takes it ends the campaign.
+    /// The callback ends the campaign.
     pub fn tell(&mut self, progress: Progress) -> Result<(), LabError> {
         match (self.on_progress)(progress) {
             ControlFlow::Continue(()) => Ok(()),
@@ -193,7 +193,7 @@ impl<'a> Runner<'a> {
     /// An error of a job becomes its record.
     ///
     /// # Errors
-    /// A folder that cannot be written to; a device that cannot be opened again; whoever follows the
+    /// A folder that cannot be written to; a device that cannot be opened again; the callback for
     /// progress ends the campaign.
     pub fn run<J: Job>(
         &mut self,

@@ -72,8 +72,8 @@ pub enum LabError {
     /// The validation layer printed messages; their number.
     #[error("the Vulkan validation layer had {0} messages (see above)")]
     Validation(usize),
-    /// Whoever follows the progress ended the work. What is finished is kept.
-    #[error("stopped; what was finished is kept")]
+    /// A callback for progress ended the work. Finished parts are kept.
+    #[error("stopped; finished parts are kept")]
     Stopped,
     /// Any other request that cannot be fulfilled.
     #[error("{0}")]
