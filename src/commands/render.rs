@@ -174,7 +174,11 @@ fn frames(
     let frames = args.frames.unwrap_or(1);
     let mut times = Vec::new();
     let bar = indicatif::ProgressBar::new((warmup + frames) as u64);
+    session.begin_warm_up(&lab.gpu.info);
     for number in 0..warmup + frames {
+        if number == warmup {
+            session.set_execution(args.execution);
+        }
         if let Some(camera) = camera(number) {
             session.place_camera(&camera);
         }

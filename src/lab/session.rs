@@ -11,6 +11,7 @@ use crate::graph::run::{Execution, FrameTimes, Update};
 use crate::graph::table::Table;
 use crate::graph::{Debug, Evaluated, signed};
 use crate::scene::{Camera, Light};
+use crate::vulkan::DeviceInfo;
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -197,15 +198,27 @@ impl Session {
         self.viewpoint.place_camera(placed, self.bounds);
     }
 
-    /// Runs `count` frames, and waits for them.
+    /// Runs frames whose times are not wanted, and waits for them. They skip passes whose inputs are
+    /// unchanged: results are the same to the bit.
     ///
     /// # Errors
     /// The device was lost.
     pub fn run(&mut self, frames: usize) -> Result<(), LabError> {
-        for _ in 0..frames {
-            self.frame(0.0)?;
-        }
+        let execution = self.execution();
+        self.set_execution(Execution::Incremental);
+        let ran = (0..frames).try_for_each(|_| self.frame(0.0).map(drop));
+        self.set_execution(execution);
+        ran?;
         self.finish().map(drop)
+    }
+
+    /// Begins frames that precede timed ones. On a software device they skip passes whose inputs are
+    /// unchanged: results are the same to the bit, several times as fast. A GPU runs all passes, so
+    /// that its clocks are those of the timed frames. [`Session::set_execution`] ends it.
+    pub fn begin_warm_up(&mut self, device: &DeviceInfo) {
+        if device.kind == "cpu" {
+            self.set_execution(Execution::Incremental);
+        }
     }
 
     /// Waits for all frames.

@@ -244,8 +244,11 @@ pub fn timed(
     let wanted = shown.into_iter().chain(extra.iter().cloned()).collect();
     let mut session = lab.build(experiment, loaded, scene.clone(), wanted, reuse)?;
     let least = session.converging_frames().saturating_sub(frames.count);
+    let execution = session.execution();
+    session.begin_warm_up(&lab.gpu.info);
     let warmup = WarmUp::of(&lab.gpu.info, frames.warmup.max(least))
         .run(&mut || Ok::<_, LabError>(session.frame(0.0)?.map_or(0.0, |times| times.gpu_ms)))?;
+    session.set_execution(execution);
     let mut times = Vec::new();
     for _ in 0..frames.count {
         times.extend(session.frame(0.0)?);

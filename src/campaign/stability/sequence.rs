@@ -61,7 +61,12 @@ pub(super) fn measure(
     let mut before: Option<(FrameState, Option<Arc<Reference>>)> = None;
     let warmup = i64::try_from(job.case.warmup).unwrap_or(0);
     let frames = i64::try_from(job.frames).unwrap_or(1);
+    let execution = session.execution();
+    session.begin_warm_up(&runner.lab.gpu.info);
     for number in -warmup..frames {
+        if number == 0 {
+            session.set_execution(execution);
+        }
         let state = place(&runner.lab, &mut session, job, number, cell, &mut lights)?;
         times.extend(session.frame(motion.delta())?);
         let Ok(frame) = usize::try_from(number) else {
