@@ -88,7 +88,7 @@ fn parameters(args: &AblateArgs) -> Result<(), LabError> {
     if scenes.is_empty() {
         scenes.push(experiment.scene.clone());
     }
-    let own = || home.root.join("captures/ablations").join(&experiment.name);
+    let own = || home.captures.join("ablations").join(&experiment.name);
     let folder = args.output.clone().unwrap_or_else(own);
 
     // Points of one number have one result: repetitions are sweeps of their own.

@@ -218,7 +218,7 @@ fn sweep_of(args: &BenchArgs, frames: Frames) -> Result<Sweep, LabError> {
     {
         axes.push(axis(option, text, form)?);
     }
-    Sweep::of(experiments, &axes, frames)
+    Sweep::of(experiments, &axes, frames, "--axis")
 }
 
 /// The configurations of a record for the experiments of the command line; all without any.
@@ -306,7 +306,7 @@ fn again<'r>(runner: &mut Runner, chosen: Vec<&'r Recorded>, frames: Frames) -> 
 
 /// Folder of the numbers and charts.
 fn folder(args: &BenchArgs, home: &Workspace, name: &str) -> PathBuf {
-    let own = || home.root.join("captures/bench").join(name);
+    let own = || home.captures.join("bench").join(name);
     args.output.clone().unwrap_or_else(own)
 }
 

@@ -51,7 +51,7 @@ pub fn run(args: &CaptureArgs) -> Result<(), LabError> {
         numbered: args.name.is_none(),
     };
     let home = Workspace::find()?;
-    let folder = home.root.join("captures");
+    let folder = home.captures.clone();
     let name = checked_name(args.name.as_ref().unwrap_or(&experiment.name))?;
     sweep_partials(&folder);
     let scene = adapt::open_scene(&experiment)?;

@@ -87,7 +87,7 @@ fn output(args: &FitArgs, home: &Workspace, name: &str) -> Result<PathBuf, LabEr
             "'{}': give it a name that ends in .ron",
             path.display()
         ))),
-        None => Ok(home.root.join("captures/fit").join(format!("{name}.ron"))),
+        None => Ok(home.captures.join("fit").join(format!("{name}.ron"))),
     }
 }
 

@@ -93,7 +93,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
     let folder = args
         .output
         .clone()
-        .unwrap_or_else(|| home.root.join("captures/stability").join(&suite.name));
+        .unwrap_or_else(|| home.captures.join("stability").join(&suite.name));
     let options = Options {
         folder,
         size,

@@ -51,7 +51,7 @@ pub fn run(args: &SweepArgs) -> Result<(), LabError> {
     let folder = args
         .output
         .clone()
-        .unwrap_or_else(|| home.root.join("captures/sweeps").join(&sweep.name));
+        .unwrap_or_else(|| home.captures.join("sweeps").join(&sweep.name));
     let options = Options {
         folder,
         shard,

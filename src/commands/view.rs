@@ -45,7 +45,7 @@ pub fn run(args: &ViewArgs) -> Result<(), LabError> {
             device: args.window_device.clone().or(gpu.device.clone()),
             ..gpu.clone()
         },
-        size: size.or(crate::workbench::session::window(&home.root).size),
+        size: size.or(crate::workbench::session::window(&home.captures).size),
     };
     let file = super::opened(args.experiment.as_deref(), &home);
     let options = Options {

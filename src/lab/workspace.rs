@@ -44,17 +44,21 @@ pub struct Workspace {
 
 impl Workspace {
     /// Finds the folders: `CONELAB_HOME`, else upwards from the working folder, else next to the
-    /// program.
+    /// program, else `share/conelab` of the prefix that the program is installed in, else the
+    /// sources that it was built from, as after `cargo install --path .`.
     ///
     /// # Errors
     /// None of them has the folders.
     pub fn find() -> Result<Workspace, LabError> {
-        Workspace::find_or(None)
+        let program = std::env::current_exe().ok();
+        let shared = program.and_then(|p| Some(p.parent()?.parent()?.join("share/conelab")));
+        let built_from = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+        Workspace::find_or(shared.filter(|p| has_sources(p)).or(Some(built_from)))
     }
 
-    /// [`Workspace::find`], and `last` where nothing else has the folders. If that is not in a
-    /// folder for work, but one of the system's or of an environment's, captures are in the working
-    /// folder.
+    /// [`Workspace::find`], and `last` if nothing else has the folders. Captures are in
+    /// `CONELAB_CAPTURES`, else in the root, or in the working folder if the root is `last`: that
+    /// may be a folder of the system.
     ///
     /// # Errors
     /// None of them has the folders.
@@ -80,16 +84,20 @@ impl Workspace {
                 .find(|p| has_sources(p))
                 .map(Path::to_path_buf),
         };
-        match (root, last.filter(|p| has_sources(p))) {
-            (Some(root), _) => Workspace::at(root),
-            (None, Some(last)) => Ok(Workspace {
-                captures: PathBuf::from("captures"),
-                ..Workspace::at(last)?
-            }),
-            (None, None) => Err(LabError::Request(
+        let last = last.filter(|p| has_sources(p));
+        let installed = root.is_none();
+        let Some(root) = root.or(last) else {
+            return Err(LabError::Request(
                 "cannot find the folders passes and shaders: run it in conelab's folder, or set CONELAB_HOME".into(),
-            )),
+            ));
+        };
+        let captures = std::env::var_os("CONELAB_CAPTURES").map(PathBuf::from);
+        let captures = captures.or_else(|| installed.then(|| "captures".into()));
+        let mut found = Workspace::at(root)?;
+        if let Some(folder) = captures {
+            found.captures = std::path::absolute(&folder).unwrap_or(folder);
         }
+        Ok(found)
     }
 
     /// Folders that are known.
@@ -290,7 +298,11 @@ impl Workspace {
         Ok(graph)
     }
 
-    fn read_of(&self, experiment: &Experiment) -> Result<Arc<Graph>, Vec<Diagnostic>> {
+    /// [`Workspace::read`] of an experiment's graph.
+    ///
+    /// # Errors
+    /// As [`Workspace::read`]; a missing graph is an error at the experiment's line.
+    pub fn read_of(&self, experiment: &Experiment) -> Result<Arc<Graph>, Vec<Diagnostic>> {
         self.read(&experiment.graph).map_err(|errors| {
             let path = self.graph_path(&experiment.graph);
             if path.exists() {

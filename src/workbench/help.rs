@@ -203,7 +203,7 @@ const KEYS_WIDTH: f32 = 150.0;
 
 /// Pages of the documentation.
 const PAGES: [(&str, &str); 5] = [
-    ("tour.md", "A tour of an hour"),
+    ("first-steps.md", "First steps"),
     ("workbench.md", "This window"),
     ("method.md", "The method and its parameters"),
     ("graph.md", "Graphs and shaders"),

@@ -252,7 +252,8 @@ impl Workbench {
     /// A log that cannot be written.
     pub fn new(options: Options, wake: Wake) -> Result<Workbench, LabError> {
         let root = options.home.root.clone();
-        let (session, [a, b]) = session::start(&root, options.restore, options.file);
+        let (session, [a, b]) =
+            session::start(&options.home.captures, options.restore, options.file);
         let experiment = a.unwrap_or(options.experiment);
         let events = options.events.as_deref().map(Events::new).transpose();
         let events = events
@@ -277,7 +278,7 @@ impl Workbench {
             ..RenderRequest::default()
         };
         watch.experiment(&session.file);
-        crate::results::capture::sweep_partials(&root.join("captures"));
+        crate::results::capture::sweep_partials(&home.captures);
         let trouble = watch.trouble.clone();
         Ok(Workbench {
             engine,

@@ -1,5 +1,5 @@
 //! State that is restored after a restart or a kill: layout, theme, size, recent files, and the experiment
-//! with its unsaved changes. It is kept in `captures/.session` of the program's folder, and written
+//! with its unsaved changes. It is kept in `captures/.session`, and written
 //! at most every two seconds, when something has changed.
 
 use super::Workbench;
@@ -62,20 +62,20 @@ pub(crate) struct Session {
     pub file: PathBuf,
 }
 
-fn folder(home: &Path) -> PathBuf {
-    home.join("captures/.session")
+fn folder(captures: &Path) -> PathBuf {
+    captures.join(".session")
 }
 
 /// The last session's window; the default if there is none that can be read.
-pub(crate) fn window(home: &Path) -> Window {
-    let text = std::fs::read_to_string(folder(home).join("window.ron"));
+pub(crate) fn window(captures: &Path) -> Window {
+    let text = std::fs::read_to_string(folder(captures).join("window.ron"));
     let read = text.ok().and_then(|text| ron::from_str(&text).ok());
     read.unwrap_or_default()
 }
 
 /// The experiments of the last session: A and, if it was compared, B.
-fn experiments(home: &Path, window: &Window) -> [Option<Experiment>; 2] {
-    let read = |name: &str| Experiment::read(&folder(home).join(name)).ok();
+fn experiments(captures: &Path, window: &Window) -> [Option<Experiment>; 2] {
+    let read = |name: &str| Experiment::read(&folder(captures).join(name)).ok();
     let a = read("a.ron").map(|a| Experiment {
         name: window.name.clone(),
         ..a
@@ -86,12 +86,12 @@ fn experiments(home: &Path, window: &Window) -> [Option<Experiment>; 2] {
 
 /// The session to start with, and the experiments that come back.
 pub(crate) fn start(
-    home: &Path,
+    captures: &Path,
     restore: Restore,
     file: PathBuf,
 ) -> (Session, [Option<Experiment>; 2]) {
     let mut session = Session {
-        folder: (restore != Restore::Nothing).then(|| folder(home)),
+        folder: (restore != Restore::Nothing).then(|| folder(captures)),
         written: Vec::new(),
         looked: Instant::now(),
         pending: None,
@@ -100,9 +100,9 @@ pub(crate) fn start(
     if session.folder.is_none() {
         return (session, [None, None]);
     }
-    let mut last = window(home);
+    let mut last = window(captures);
     let found = match restore {
-        Restore::Experiment => experiments(home, &last),
+        Restore::Experiment => experiments(captures, &last),
         _ => [None, None],
     };
     if found[0].is_none() {

@@ -64,7 +64,7 @@ impl Run<'_> {
         let experiment =
             save::experiment(&self.desired, &desired, &name, self.clock.now, Some(&scene));
         let (lab, out) = (self.lab.clone(), self.out.clone());
-        let folder = lab.home.root.join("captures");
+        let folder = lab.home.captures.clone();
         std::thread::spawn(move || {
             let take = || {
                 save::take(&lab, &experiment, scene, &folder, resources, timers)

@@ -66,7 +66,7 @@ impl Bookmarks {
 impl Workbench {
     /// Buttons for the kept cameras of the scene, and a field to keep this one.
     pub(super) fn bookmark_rows(&mut self, ui: &mut Ui) {
-        let cameras = self.setup.home.root.join("captures/cameras");
+        let cameras = self.setup.home.captures.join("cameras");
         let folder = cameras.join(short(&self.desired.scene));
         let bookmarks = &mut self.tabs.surroundings.bookmarks;
         match bookmarks.rows(ui, folder.clone()) {

@@ -261,7 +261,7 @@ impl Workbench {
     }
 
     fn gallery_rows(&mut self, ui: &mut Ui) {
-        let folder = self.setup.home.root.join("captures");
+        let folder = self.setup.home.captures.clone();
         let gallery = &mut self.tabs.gallery;
         while let Some((path, image)) = gallery.decoding.take() {
             let (name, linear) = (path.to_string_lossy(), egui::TextureOptions::LINEAR);

@@ -124,9 +124,12 @@ impl Workbench {
         self.write_settings(&file, failed)?;
         let Sequence { frames, rate, .. } = self.tabs.paths.sequence;
         let root = &self.setup.home.root;
-        let to = root.join(&self.tabs.paths.sequence.folder);
+        let captures = &self.setup.home.captures;
+        let beside = captures.parent().unwrap_or(root);
+        let to = beside.join(&self.tabs.paths.sequence.folder);
         let mut command = Command::new(std::env::current_exe().map_err(failed)?);
         command.current_dir(root).env("CONELAB_HOME", root);
+        command.env("CONELAB_CAPTURES", captures);
         command.arg("render").arg(&file).arg("--sequence").arg(&to);
         command.args(["--frames", &frames.to_string()]);
         command.args(["--step", &(1.0 / rate).to_string()]);

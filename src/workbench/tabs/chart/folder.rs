@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Folders under `captures/sweeps` that hold a sweep, by name.
-pub fn list(root: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(root.join("captures/sweeps"))
+pub fn list(captures: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(captures.join("sweeps"))
         .into_iter()
         .flatten()
         .flatten();

@@ -156,8 +156,8 @@ impl Workbench {
 
     fn folder_row(&mut self, ui: &mut Ui) {
         let chart = &mut self.tabs.chart;
-        let root = &self.setup.home.root;
-        let folders = chart.folders.get_or_insert_with(|| folder::list(root));
+        let captures = &self.setup.home.captures;
+        let folders = chart.folders.get_or_insert_with(|| folder::list(captures));
         let folders = folders.clone();
         let shown = chart.folder.as_ref().map(|f| f.path.clone());
         let mut chosen = None;

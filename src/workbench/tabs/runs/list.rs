@@ -30,10 +30,10 @@ impl Run {
 }
 
 /// The runs in `captures`, the latest first.
-pub(super) fn list(root: &Path) -> Vec<Run> {
+pub(super) fn list(captures: &Path) -> Vec<Run> {
     let mut list = Vec::new();
     for kind in Kind::ALL {
-        let folder = root.join("captures").join(kind.folder());
+        let folder = captures.join(kind.folder());
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
         for entry in entries.filter(|e| e.path().is_dir()) {
             let age = entry.metadata().and_then(|m| m.modified()).ok();

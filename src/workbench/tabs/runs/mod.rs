@@ -87,8 +87,12 @@ impl Workbench {
                 self.tabs.runs.list = None;
             }
         });
-        let root = &self.setup.home.root;
-        let list = self.tabs.runs.list.get_or_insert_with(|| list::list(root));
+        let captures = &self.setup.home.captures;
+        let list = self
+            .tabs
+            .runs
+            .list
+            .get_or_insert_with(|| list::list(captures));
         if list.is_empty() {
             ui.weak("None yet. Finished runs are saved in captures and listed here.");
         }
@@ -220,7 +224,7 @@ impl Workbench {
             Kind::Sweep => format!("{base}-{}", plan.param),
             _ => base,
         };
-        let parent = self.setup.home.root.join("captures");
+        let parent = self.setup.home.captures.clone();
         let (folder, name) = free_folder(&parent.join(plan.kind.folder()), &base);
         let side = save::without_cursors(&side, Some(&info.graph));
         let time = self.desired.clock.at;
@@ -245,7 +249,7 @@ impl Workbench {
         report: Option<PathBuf>,
     ) {
         let setup = &self.setup;
-        let process = Process::start(words, &setup.home.root, &setup.gpu, &setup.wake);
+        let process = Process::start(words, &setup.home, &setup.gpu, &setup.wake);
         self.event("run started", json!({ "command": words, "folder": folder }));
         self.tabs.runs.list = None;
         self.tabs.runs.said = None;

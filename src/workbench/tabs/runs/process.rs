@@ -1,10 +1,10 @@
 //! A command of this program as a process of its own, and its progress.
 
+use crate::lab::Workspace;
 use crate::vulkan::GpuOptions;
 use crate::workbench::background::Wake;
 use crossbeam_channel::{Receiver, Sender, TryRecvError, unbounded};
 use std::io::{BufRead, BufReader, Read};
-use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -28,12 +28,13 @@ impl Process {
     /// Starts a command of this program.
     pub fn start(
         words: &[String],
-        home: &Path,
+        home: &Workspace,
         gpu: &GpuOptions,
         wake: &Wake,
     ) -> std::io::Result<Process> {
         let mut command = Command::new(std::env::current_exe()?);
-        command.args(words).env("CONELAB_HOME", home);
+        command.args(words).env("CONELAB_HOME", &home.root);
+        command.env("CONELAB_CAPTURES", &home.captures);
         if words.first().is_some_and(|w| w != "report") {
             if let Some(device) = &gpu.device {
                 command.args(["--device", device]);

@@ -9,7 +9,7 @@ impl Workbench {
     /// Writes an export into `captures/`, with a message.
     pub(crate) fn export(&mut self, name: &str, ending: &str, bytes: std::io::Result<Vec<u8>>) {
         let written = bytes.map_err(|e| FileError::content(name.as_ref(), e));
-        let written = written.and_then(|b| write_free(&self.setup.home.root, name, ending, &b));
+        let written = written.and_then(|b| write_free(&self.setup.home.captures, name, ending, &b));
         let ok = written.is_ok();
         let text = match written {
             Ok(path) => format!("wrote {}", path.display()),
@@ -33,8 +33,13 @@ impl Workbench {
     }
 }
 
-/// Writes `captures/NAME.ENDING` under `root`, or with a number behind the name when that exists.
-fn write_free(root: &Path, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, FileError> {
+/// Writes `NAME.ENDING` in `captures`, or with a number behind the name when that exists.
+fn write_free(
+    captures: &Path,
+    name: &str,
+    ending: &str,
+    bytes: &[u8],
+) -> Result<PathBuf, FileError> {
     let plain = |c: char| c.is_alphanumeric() || "-_".contains(c);
     let letters = name.chars().map(|c| if plain(c) { c } else { '_' });
     let stem: String = letters.collect();
@@ -44,16 +49,14 @@ fn write_free(root: &Path, name: &str, ending: &str, bytes: &[u8]) -> Result<Pat
         } else {
             format!("-{n}")
         };
-        let path = root
-            .join("captures")
-            .join(format!("{stem}{number}.{ending}"));
+        let path = captures.join(format!("{stem}{number}.{ending}"));
         match crate::files::write_new(&path, bytes) {
             Err(e) if e.is_there() => {}
             other => return other.map(|()| path),
         }
     }
     Err(FileError::write(
-        &root.join("captures").join(stem),
+        &captures.join(stem),
         "too many files of that name",
     ))
 }
@@ -67,8 +70,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let first = write_free(folder.path(), "times-a b/c", "csv", b"1").unwrap();
         let second = write_free(folder.path(), "times-a b/c", "csv", b"2").unwrap();
-        assert_eq!(first, folder.path().join("captures/times-a_b_c.csv"));
-        assert_eq!(second, folder.path().join("captures/times-a_b_c-2.csv"));
+        assert_eq!(first, folder.path().join("times-a_b_c.csv"));
+        assert_eq!(second, folder.path().join("times-a_b_c-2.csv"));
         assert_eq!(
             (
                 std::fs::read(first).unwrap(),
