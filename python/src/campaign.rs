@@ -10,6 +10,7 @@ use conelab::campaign::fit;
 use conelab::campaign::runner::{Counts, OnProgress, Runner};
 use conelab::campaign::stability::{self, Suite};
 use conelab::campaign::sweep::{self, Shard, Sweep};
+use conelab::diagnostics::SETTINGS;
 use conelab::experiment::Experiment as Setup;
 use conelab::lab::{Lab as Opened, LabError};
 use conelab::measure::Frames;
@@ -113,6 +114,7 @@ pub fn run_sweep(
             setups(experiments, &settings)?,
             &axes,
             sweep::DEFAULT_FRAMES,
+            SETTINGS,
         ),
     };
     let sweep = sweep.map_err(exception)?;
@@ -156,7 +158,8 @@ pub fn run_bench(
         warmup: warmup.unwrap_or(0),
         count: frames_,
     };
-    let sweep = Sweep::of(setups(experiments, &settings)?, &axes, before).map_err(exception)?;
+    let sweep =
+        Sweep::of(setups(experiments, &settings)?, &axes, before, SETTINGS).map_err(exception)?;
     run(py, lab.get(), progress, |open, on_progress| {
         let mut runner = Runner::open(open, &open_scene, on_progress)?;
         let bench = of_sweep(&mut runner, &sweep, rounds, warmup, &folder)?.0;

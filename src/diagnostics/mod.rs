@@ -95,9 +95,10 @@ const MAX_LINE: usize = 240;
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", harmless(&self.place.file.to_string_lossy()))?;
         // Command line arguments have no lines.
-        let option = self.place.file.to_string_lossy().starts_with("--");
+        let file = self.place.file.to_string_lossy();
+        let option = file.starts_with("--") || file == SETTINGS;
+        write!(f, "{}", harmless(&file))?;
         if self.place.line > 0 && !option {
             write!(f, ":{}", self.place.line)?;
             if self.place.column > 0 {
@@ -124,6 +125,11 @@ impl fmt::Display for Diagnostic {
     }
 }
 
+/// Begins the hint of a name that is close.
+pub const DID_YOU_MEAN: &str = "did you mean";
+/// Stands for a file in messages about settings that a program gives: they have no lines.
+pub const SETTINGS: &str = "settings";
+
 /// "did you mean 'x'?" if a known name is close, else a list of known names if it is short.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let mut known: Vec<&str> = known.into_iter().collect();
@@ -139,7 +145,7 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
         })
         .max_by(|a, b| a.0.total_cmp(&b.0));
     match close {
-        Some((score, k)) if score > 0.8 => Some(format!("did you mean '{k}'?")),
+        Some((score, k)) if score > 0.8 => Some(format!("{DID_YOU_MEAN} '{k}'?")),
         _ if known.is_empty() => None,
         _ if known.len() <= 12 => Some(format!("known: {}", known.join(", "))),
         _ => None,

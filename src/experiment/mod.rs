@@ -13,7 +13,7 @@ pub(crate) use write::placed_text;
 pub(crate) use write::resolved_text;
 pub use write::write;
 
-use crate::diagnostics::{At, Diagnostic, Loc, Sources};
+use crate::diagnostics::{At, DID_YOU_MEAN, Diagnostic, Loc, Sources, nearest};
 use crate::files::FileError;
 use crate::graph::param::Params;
 use crate::scene::{Camera, LightFields, MAX_COORDINATE, environment};
@@ -208,7 +208,13 @@ impl Experiment {
         let mut errors = Vec::new();
         for (name, text) in &self.params {
             if let Err(message) = params.set(&name.value, text) {
-                errors.push(self.sources.error(name.at, message));
+                let mut error = self.sources.error(name.at, message);
+                // A misspelt field looks like a parameter.
+                if params.index(&name.value).is_none() && !error.message.contains(DID_YOU_MEAN) {
+                    let field = nearest(&name.value, FIELDS.iter().map(|f| f.name));
+                    error = error.help(field.filter(|help| help.starts_with(DID_YOU_MEAN)));
+                }
+                errors.push(error);
             }
         }
         if errors.is_empty() {

@@ -41,11 +41,13 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// A sweep without a file: every experiment with every combination of settings.
+    /// A sweep without a file: every experiment with every combination of settings. `source` stands for a file in
+    /// messages about the axes.
     pub fn of(
         mut experiments: Vec<Experiment>,
         axes: &[Axis],
         frames: Frames,
+        source: &str,
     ) -> Result<Sweep, LabError> {
         if let Some((name, _)) = axes.iter().find(|a| a.1.is_empty()) {
             return Err(LabError::Request(format!("'{name}' has no values")));
@@ -59,7 +61,7 @@ impl Sweep {
             "=",
         );
         for experiment in &mut experiments {
-            experiment.sources.add("--axis".as_ref(), text.clone());
+            experiment.sources.add(source.as_ref(), text.clone());
         }
         let choice = |s: &Setting, value: &String| {
             Choice::of(vec![Setting {

@@ -58,6 +58,34 @@ impl<'c> Row<'c> {
     }
 }
 
+/// Points whose scores are those of an earlier point with the same reference, to the bit, with the first of these: what
+/// differs between their settings does not change the picture.
+fn same_scores<'c>(rows: &[Row<'c>]) -> BTreeMap<&'c str, &'c str> {
+    let mut first = BTreeMap::new();
+    let mut same = BTreeMap::new();
+    for row in rows {
+        let Some(point) = row.point().filter(|p| !p.scores.is_empty()) else {
+            continue;
+        };
+        let bits: Vec<u64> = row
+            .parts
+            .values()
+            .flat_map(|m| m.values())
+            .map(|v| v.to_bits())
+            .collect();
+        let key = (&point.stats.scene, &point.references, bits);
+        match first.get(&key) {
+            Some(id) => {
+                same.insert(row.planned.id.as_str(), *id);
+            }
+            None => {
+                first.insert(key, row.planned.id.as_str());
+            }
+        }
+    }
+    same
+}
+
 /// Comma-separated values (RFC 4180), a line for each point in order. Columns that end in ` ms` are
 /// times and differ between runs. All others are the same on one device.
 pub fn csv(collected: &Collected) -> Result<String, LabError> {
@@ -71,6 +99,7 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
     let scores: BTreeSet<(&str, &str)> = parts
         .flat_map(|(part, m)| m.keys().map(|m| (part.as_str(), m.as_str())))
         .collect();
+    let same = same_scores(&rows);
     let mut table = Table::new(&rows);
     table.column("id", |r| r.planned.id.clone());
     table.column("outcome", |r| {
@@ -106,6 +135,7 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
             .collect::<Vec<_>>()
             .join("; ")
     });
+    table.column("same scores as", |r| cell(same.get(r.planned.id.as_str())));
     table.column("error", |r| cell(r.record.and_then(|r| r.error())));
     table.column("total median ms", of(|s| s.total_gpu_ms.median.to_string()));
     table.column("total p95 ms", of(|s| s.total_gpu_ms.p95.to_string()));
