@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _conelab
-from .errors import CampaignError, RequestError
+from .errors import CampaignError, RequestError, spelling
 from .progress import Callback, bar
 from .ron import ron, setting
 
@@ -100,7 +100,7 @@ def sweep(
     if isinstance(experiments, (str, os.PathLike)) and not axes and not settings:
         file = _sweep_file(lab, experiments)
     target = Path(folder) if folder is not None else lab.captures / "sweeps" / _name(file or experiments)
-    with bar(progress) as callback:
+    with spelling(settings, type(lab).sweep), bar(progress) as callback:
         done, failed = _conelab.run_sweep(
             lab._native,
             None if file is None else os.fspath(file),
@@ -173,7 +173,7 @@ def bench(
 ) -> Bench:
     """See `Lab.bench`."""
     target = Path(folder) if folder is not None else lab.captures / "bench" / _name(experiments)
-    with bar(progress) as callback:
+    with spelling(settings, type(lab).bench), bar(progress) as callback:
         _conelab.run_bench(
             lab._native,
             _which(lab, experiments),
@@ -241,7 +241,7 @@ def fit(
     path = Path(output) if output is not None else lab.captures / "fit" / f"{_name(experiment)}.ron"
     if path.suffix != ".ron":
         raise RequestError(f"'{path}': give it a name that ends in .ron")
-    with bar(progress) as callback:
+    with spelling(settings, type(lab).fit), bar(progress) as callback:
         ms, error, _, why, within = _conelab.run_fit(
             lab._native,
             _which(lab, experiment)[0],

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
+import inspect
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 
@@ -82,3 +86,17 @@ class CampaignError(Error):
 
     def __reduce__(self) -> Any:
         return type(self), (str(self), self.result)
+
+
+@contextmanager
+def spelling(settings: Iterable[str], call: Callable[..., Any]) -> Iterator[None]:
+    """Adds to errors about unknown settings which argument of the call may be meant."""
+    names = list(settings)
+    try:
+        yield
+    except InputError as error:
+        for name in (name for name in names if f"no parameter '{name}'" in str(error)):
+            for near in difflib.get_close_matches(name, inspect.signature(call).parameters, n=1, cutoff=0.8):
+                message = f"{error}\n    = help: did you mean the argument '{near}'?"
+                raise type(error)(message, error.findings) from None
+        raise

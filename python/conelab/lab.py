@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 import weakref
 from collections.abc import Iterable, Mapping, Sequence
@@ -9,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _conelab
-from .errors import RequestError
+from .errors import RequestError, spelling
 from .progress import Callback, bar, log
 from .ron import setting
 
@@ -114,6 +115,14 @@ class Lab:
         """Names of the experiments in `home`, for `open`."""
         return sorted(path.stem for path in (self.home / "configs").glob("*.ron"))
 
+    def scenes(self) -> pd.Series[str]:
+        """What every built-in scene shows, by name, and scene files of `home`, for the argument `scene`."""
+        import pandas as pd
+
+        files = sorted((self.home / "configs" / "scenes").glob("*.ron"))
+        named = dict(_conelab.scenes()) | {str(f.relative_to(self.home)): "a scene file" for f in files}
+        return pd.Series(named, name="scene")
+
     def __repr__(self) -> str:
         try:
             device = self.device
@@ -149,7 +158,7 @@ class Lab:
 
         file, text = self._source(experiment)
         lights = settings.pop("lights", None)
-        with bar(progress) as callback:
+        with spelling(settings, Lab.open), bar(progress) as callback:
             native = _conelab.Experiment.open(
                 self._native, os.fspath(file), text, self._settings(settings), list(keep), callback
             )
@@ -184,7 +193,8 @@ class Lab:
                 "flip=0.01"; when absent, references that exist are used.
             frames: timed frames of each point; 20 when absent.
             warmup: least number of frames before them; 40 when absent.
-            folder: for the points; `captures/sweeps/NAME` when absent. Points in it are not measured again.
+            folder: for the points, in the working folder if relative; `captures/sweeps/NAME` when absent. Points in it are
+                not measured again; `sweep.csv` there is replaced by each sweep.
             again: measure failed points again.
             settings: of every point.
 
@@ -323,8 +333,6 @@ class Lab:
             return path if path.exists() or not at_home.exists() else at_home
         known = self.home / folder
         if not (known / f"{path}.ron").is_file():
-            import difflib
-
             names = sorted(p.stem for p in known.glob("*.ron"))
             near = difflib.get_close_matches(str(name), names, n=1)
             hint = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(names)}"

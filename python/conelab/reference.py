@@ -65,10 +65,8 @@ class Picture:
         Args:
             exposure: stops.
         """
-        linear = np.nan_to_num(np.maximum(self.array, 0.0)) * np.float32(2.0**exposure)
-        shown = linear / (1.0 + linear) if self.kind in ("direct", "radiance") else np.minimum(linear, 1.0)
-        curve = np.where(shown <= 0.0031308, 12.92 * shown, 1.055 * shown ** (1 / 2.4) - 0.055)
-        return (curve * 255.0 + 0.5).astype(np.uint8)
+        shown = np.frombuffer(_conelab.displayed(self._given(), exposure), np.uint8)
+        return shown.reshape(self.array.shape)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
         array: np.ndarray[Any, Any] = np.array(self.array, dtype=dtype) if copy else np.asarray(self.array, dtype=dtype)

@@ -103,7 +103,7 @@ class Score:
         pictures = (
             (self.parts[part].displayed(), self._name),
             (self._reference.parts[part].displayed(), self.json["reference"]),
-            (heat(self.maps(part)["flip"]), f"FLIP of the {part}, 0 (black) to 1"),
+            (heat(self.maps(part)["flip"]), f"FLIP of the {part}, 0 (black) to 1 (white)"),
         )
         figures = "".join(
             f"<figure style='margin:0'>{image(rgb, 320)}<figcaption>{text}</figcaption></figure>"
@@ -228,6 +228,6 @@ def _compared(
 
 
 def heat(values: np.ndarray) -> np.ndarray:
-    """A map from 0 to 1 as black, red, yellow and white: [height, width, 3], uint8."""
-    scaled = np.nan_to_num(np.asarray(values, np.float32), nan=1.0) * 3.0
-    return (np.stack([scaled, scaled - 1.0, scaled - 2.0], axis=-1).clip(0.0, 1.0) * 255.0).astype(np.uint8)
+    """A map from 0 to 1 in the colours of the program's error maps (magma): [height, width, 3], uint8."""
+    array = np.ascontiguousarray(values, np.float32)
+    return np.frombuffer(_conelab.magma(array.tobytes()), np.uint8).reshape(*array.shape, 3)

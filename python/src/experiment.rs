@@ -8,6 +8,7 @@ use crate::params;
 use crate::progress::Reporter;
 use crate::reference::{Reference, word};
 use conelab::campaign::settings::{apply, lines};
+use conelab::diagnostics::SETTINGS;
 use conelab::experiment::{Experiment as Setup, write};
 use conelab::graph::run::{Execution, FrameTimes};
 use conelab::graph::table::CellKind;
@@ -129,7 +130,11 @@ impl State {
             run.warmup.unwrap_or(converging - 1),
         );
         let all = frames + warmup;
+        session.begin_warm_up(&lab.gpu.info);
         for number in 0..all {
+            if number == warmup {
+                session.set_execution(run.execution);
+            }
             run.times.extend(session.frame(run.step)?);
             if tick(number + 1, all).is_break() {
                 session.finish()?;
@@ -241,7 +246,7 @@ pub fn settled(
         .iter()
         .map(|(name, value)| (name.as_str(), value.as_str()));
     let (text, list) = lines(pairs, " = ");
-    setup.sources.add("Python".as_ref(), text);
+    setup.sources.add(SETTINGS.as_ref(), text);
     let errors = apply(&mut setup, &list, folder);
     if errors.is_empty() {
         Ok(setup)
@@ -316,10 +321,14 @@ impl Experiment {
         };
         let setup = read.map_err(|list| exception(LabError::Input(list)))?;
         let setup = settled(&setup, &settings, Path::new(".")).map_err(exception)?;
+        let home = opened.home.clone();
+        // Scenes take longer to read than graphs: wrong names come first.
+        let graph = home.read_of(&setup).map_err(LabError::Input);
+        let known = graph.and_then(|graph| params_of(&graph, &setup));
+        known.map_err(exception)?;
         let mut reporter = Reporter::new(progress);
         let unlit = lab.get().scene(&setup, &mut reporter, py);
         let unlit = reporter.end(unlit)?;
-        let home = opened.home.clone();
         let made = py.detach(|| {
             let scene = setup.adapted(unlit.clone())?;
             let loaded = home
@@ -402,7 +411,7 @@ impl Experiment {
     /// The lights of this text of an experiment (`lights: {...}`), over those of the scene.
     fn set_lights(&self, py: Python<'_>, lights: &str) -> PyResult<()> {
         let text = format!("(graph: \"\", scene: \"\", lights: {lights})");
-        let read = Setup::from_text("Python".as_ref(), &text);
+        let read = Setup::from_text(SETTINGS.as_ref(), &text);
         let read = read.map_err(|list| exception(LabError::Input(list)))?;
         self.call(py, move |state, lab| {
             let mut setup = state.setup.clone();

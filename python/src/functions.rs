@@ -5,10 +5,12 @@ use crate::memory::Memory;
 use crate::reference::word;
 use conelab::lab::{LabError, Texels, Workspace};
 use conelab::measure::comparison::{Request, Side, compare as compared};
-use conelab::metrics::maps::layers;
+use conelab::metrics::colour::display;
+use conelab::metrics::maps::{self, layers};
 use conelab::metrics::region::Region;
 use conelab::metrics::{Best, Compared, Kind, Linear, METRICS, Noise};
 use conelab::results::picture;
+use conelab::scene::builtin;
 use conelab::vulkan::{Format, list_devices};
 use pyo3::Bound;
 use pyo3::prelude::{PyResult, Python, pyfunction};
@@ -185,6 +187,39 @@ pub fn write_picture(py: Python<'_>, path: PathBuf, picture: Given) -> PyResult<
     let picture = linear(picture)?;
     py.detach(|| picture::write_linear(&path, &picture))
         .map_err(exception)
+}
+
+/// The bytes that a display shows of a picture, sRGB, three for each pixel, at an exposure in stops.
+#[pyfunction]
+pub fn displayed<'py>(
+    py: Python<'py>,
+    picture: Given,
+    exposure: f32,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let picture = linear(picture)?;
+    let bytes: Vec<u8> = py.detach(|| {
+        let channels = picture.rgb.as_flattened().iter();
+        let exposed = channels.map(|c| display(picture.kind, c * exposure.exp2()));
+        exposed.map(|v| (v * 255.0).round() as u8).collect()
+    });
+    Ok(PyBytes::new(py, &bytes))
+}
+
+/// Values from 0 to 1 in the colours of error maps, sRGB, three bytes for each.
+#[pyfunction]
+pub fn magma<'py>(py: Python<'py>, values: PyBackedBytes) -> Bound<'py, PyBytes> {
+    let values: Vec<f32> = bytemuck::pod_collect_to_vec(&values);
+    let bytes: Vec<u8> = values
+        .iter()
+        .flat_map(|v| maps::magma(f64::from(*v)))
+        .collect();
+    PyBytes::new(py, &bytes)
+}
+
+/// Name and description of the built-in scenes.
+#[pyfunction]
+pub fn scenes() -> Vec<(&'static str, &'static str)> {
+    builtin::list().collect()
 }
 
 /// A PNG of 8-bit RGBA pixels; alpha is left out.

@@ -26,8 +26,8 @@ mod _conelab {
     use super::experiment::Experiment;
     #[pymodule_export]
     use super::functions::{
-        compare, devices, error_maps, graph_params, metrics, png, read_picture, version,
-        write_picture,
+        compare, devices, displayed, error_maps, graph_params, magma, metrics, png, read_picture,
+        scenes, version, write_picture,
     };
     #[pymodule_export]
     use super::lab::Lab;

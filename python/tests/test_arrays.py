@@ -79,3 +79,20 @@ def test_buffers_and_tables_are_numbers(lab):
             continue
         frame = conelab.table_frame(table)
         assert len(frame) == len(table) and len(frame.columns) >= len(table.dtype.names)
+
+
+def test_displayed_pictures_and_maps_have_the_colours_of_the_program():
+    # c / (1 + c), then sRGB (IEC 61966-2-1): 1 becomes 0.5, and that 188 of 255.
+    grey = conelab.Picture(np.full((1, 2, 3), [1.0, 1.0, 0.0], np.float32))
+    assert grey.displayed().tolist() == [[[188, 188, 0]] * 2]
+    assert (grey.displayed(exposure=-100.0) == 0).all()
+    assert conelab.Picture(np.ones((1, 1, 3)), "openness").displayed().tolist() == [[[255, 255, 255]]]
+    # The ends of magma, as matplotlib has it.
+    assert conelab.heat(np.array([[0.0, 1.0, np.nan]])).tolist() == [[[0, 0, 4], [252, 253, 191], [252, 253, 191]]]
+
+
+def test_scenes_have_names_that_open(lab):
+    scenes = lab.scenes()
+    assert "cornell" in scenes.index and "Cornell box" in scenes["cornell"]
+    assert "configs/scenes/shapes.ron" in scenes.index
+    assert lab.open("rays", scene="configs/scenes/shapes.ron", size=(16, 16), progress=False).lights

@@ -14,6 +14,10 @@ def test_a_row_of_a_sweep_opens_what_was_measured(lab, tmp_path):
     )  # fmt: skip
     assert len(table) == 8 and set(table["outcome"]) == {"done"}
     assert table["total flip"].between(0, 1).all() and (table["total flip noise"] > 0).all()
+    # Exposure is applied after the scored pictures: the second of each pair has the scores of the first.
+    assert table["same scores as"].isna().sum() == 4
+    pairs = table[table["exposure"] == 1.0]["same scores as"].tolist()
+    assert pairs == table[table["exposure"] == 0.0]["id"].tolist()
     row = table[(table["experiment"] == "rays") & (table["scene"] == "door-ajar") & (table["exposure"] == 1.0)].iloc[0]
     exp = lab.open(row, progress=False)
     assert exp.graph_name == "rays.ron" and exp.scene == "door-ajar" and exp.size == (48, 32)
@@ -37,6 +41,8 @@ def test_failed_points_raise_and_leave_the_others(lab, device, captures, tmp_pat
         lab.sweep("cones", {"scene": ["nowhere.obj"]}, folder=tmp_path / "t", progress=False)
     with pytest.raises(conelab.InputError, match="no parameter 'exposre'"):
         lab.sweep("cones", {"exposre": [1.0]}, folder=tmp_path / "t", progress=False, **SMALL)
+    with pytest.raises(conelab.InputError, match="settings: error: no parameter 'referance'.*\n.*the argument 'reference'"):
+        lab.sweep("cones", referance=32, folder=tmp_path / "t", progress=False, **SMALL)
     with pytest.raises(conelab.RequestError, match="must be a list"):
         lab.sweep("cones", {"scene": "cornell"}, folder=tmp_path / "t", progress=False)
 

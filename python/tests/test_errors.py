@@ -31,6 +31,8 @@ def test_parameters_complete_and_say_what_is_wrong(rays):
     assert rays.params["exposure"] == 1.5 and rays.params.changed()["exposure"] == 1.5
     with pytest.raises(conelab.InputError, match="no parameter 'exposre'.*exposure"):
         rays.params.exposre = 1.0
+    with pytest.raises(conelab.InputError, match="(?s)no parameter 'scen'.*did you mean 'scene'"):
+        rays.lab.open("rays", scen="nowhere.obj", progress=False)
     with pytest.raises(conelab.InputError, match="exposure.*-10.*10"):
         rays.params.exposure = 11.0
     with pytest.raises(conelab.InputError, match="tone_map"):
