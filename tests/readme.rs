@@ -1,5 +1,6 @@
-//! Every command of the README and of the long tour works as written: each line of their `sh` blocks is run from the
-//! a copy of what they need of the repository, on the software device, those of the README first.
+//! Every command of the README and of the tutorials works as written: each line of their `sh` blocks is run in a copy of
+//! what they need of the repository, on the software device. Each page starts from a fresh copy, so that it works on its
+//! own after the README's build.
 
 mod common;
 
@@ -27,28 +28,16 @@ fn commands_of(page: &str) -> Vec<String> {
     commands
 }
 
-#[test]
-fn every_command_of_the_readme_and_of_the_tour_works() {
-    let readme = commands_of("README.md");
-    let tour = commands_of("docs/tour.md");
+/// Runs the commands of a page, of which there are at least some.
+fn run(page: &str, least: usize) {
+    let commands = commands_of(page);
     assert!(
-        readme.len() >= 10,
-        "the README has lost its tour: {readme:?}"
+        commands.len() >= least,
+        "{page} has lost its commands: {commands:?}"
     );
-    assert!(
-        tour.len() >= 20,
-        "the long tour has lost its commands: {tour:?}"
-    );
-    for build in ["make demo", "make test", "make slow"] {
-        assert!(
-            readme.iter().any(|c| c == build),
-            "the README does not say `{build}`"
-        );
-    }
     let makefile = std::fs::read_to_string(root().join("Makefile")).unwrap();
     let home = common::home();
-    // The tour goes on with what the README's commands left.
-    for command in readme.iter().chain(&tour) {
+    for command in &commands {
         if let Some(target) = BUILDS
             .iter()
             .find(|b| command.starts_with(*b))
@@ -62,7 +51,7 @@ fn every_command_of_the_readme_and_of_the_tour_works() {
             );
             continue;
         }
-        // Pictures settle over 32 frames, which take a software device minutes: two tell whether the command works.
+        // Pictures take a software device minutes to converge: two frames tell whether the command works.
         let settles = ["conelab render ", "conelab compare ", "conelab ablate "]
             .iter()
             .any(|c| command.contains(c));
@@ -74,6 +63,7 @@ fn every_command_of_the_readme_and_of_the_tour_works() {
         // The pages speak of the release build; tests have their own.
         let command =
             command.replace("target/release/conelab", env!("CARGO_BIN_EXE_conelab")) + frames;
+        let started = std::time::Instant::now();
         let output = Command::new("sh")
             .args(["-c", &command])
             .current_dir(home.path())
@@ -89,5 +79,43 @@ fn every_command_of_the_readme_and_of_the_tour_works() {
             text(&output.stdout),
             text(&output.stderr)
         );
+        println!("{:.1} s: {command}", started.elapsed().as_secs_f64());
     }
+}
+
+#[test]
+fn the_readme() {
+    let commands = commands_of("README.md");
+    for build in ["make demo", "make test", "make slow"] {
+        assert!(
+            commands.iter().any(|c| c == build),
+            "the README does not say `{build}`"
+        );
+    }
+    run("README.md", 8);
+}
+
+#[test]
+fn first_steps() {
+    run("docs/first-steps.md", 5);
+}
+
+#[test]
+fn compare_methods() {
+    run("docs/compare-methods.md", 2);
+}
+
+#[test]
+fn sweep_to_figure() {
+    run("docs/sweep-to-figure.md", 3);
+}
+
+#[test]
+fn own_scene() {
+    run("docs/own-scene.md", 5);
+}
+
+#[test]
+fn commands_by_task() {
+    run("docs/how-to.md", 20);
 }
