@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Packs dist/conelab-VERSION-x86_64-linux.tar.gz: a program that needs glibc, libgcc and a Vulkan loader with a driver.
+# Where dpkg-deb is there, also a Debian package of the same; and SHA256SUMS.
 #
 #   scripts/dist.sh VERSION
 set -euo pipefail
@@ -47,5 +48,34 @@ Linux on $(uname -m) with glibc ${glibc#GLIBC_} or newer, libgcc_s.so.1, and a V
 (Debian, Ubuntu: libvulkan1 mesa-vulkan-drivers). Run ./conelab in this folder, or set CONELAB_HOME to it.
 TEXT
 tar -C "$work" --owner=0 --group=0 --sort=name -czf "dist/$name.tar.gz" "$name"
+files=("$name.tar.gz")
+
+if command -v dpkg-deb >/dev/null; then
+    arch=$(dpkg --print-architecture)
+    deb=$work/deb
+    mkdir -p "$deb/DEBIAN" "$deb/usr/bin" "$deb/usr/share/conelab" "$deb/usr/share/doc/conelab"
+    cp "$out/conelab" "$deb/usr/bin/"
+    cp -r "$out/passes" "$out/shaders" "$out/configs" "$deb/usr/share/conelab/"
+    cat LICENSE LICENSE-MIT LICENSE-APACHE >"$deb/usr/share/doc/conelab/copyright"
+    cp "$out/THIRD-PARTY.txt" "$deb/usr/share/doc/conelab/"
+    cat >"$deb/DEBIAN/control" <<CONTROL
+Package: conelab
+Version: $version
+Architecture: $arch
+Maintainer: The conelab authors <noreply@invalid>
+Section: graphics
+Priority: optional
+Installed-Size: $(du -sk "$deb/usr" | cut -f 1)
+Depends: libc6 (>= ${glibc#GLIBC_}), libgcc-s1, libvulkan1
+Recommends: mesa-vulkan-drivers, libx11-xcb1, libxcursor1, libxi6, libxkbcommon-x11-0, libwayland-client0
+Description: research workbench for voxel cone tracing
+ Lighting methods as graphs of passes, timed on the GPU and compared with
+ path-traced references.
+CONTROL
+    chmod -R u=rwX,go=rX "$deb"
+    dpkg-deb --root-owner-group --build "$deb" "dist/conelab_${version}_$arch.deb" >/dev/null
+    files+=("conelab_${version}_$arch.deb")
+fi
+(cd dist && sha256sum "${files[@]}" >SHA256SUMS)
 cat "$out/NEEDS.txt"
-printf 'wrote %s (%s)\n' "dist/$name.tar.gz" "$(du -h "dist/$name.tar.gz" | cut -f 1)"
+(cd dist && du -h "${files[@]}" SHA256SUMS)
