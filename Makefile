@@ -12,7 +12,7 @@ ARGS ?=
 TESTS ?=
 # Suites that take a minute and more; what takes a second at most; and all others (files of tests/).
 SLOW := area_lights chart converge emitters energy families furnace incremental normal_maps options readme reference runs scales settings stability sweep turns tutorial volume window
-QUICK := effects floors graph_errors hostile metrics results structure
+QUICK := effects floors graph_errors hostile metrics pages results structure
 SUITES := $(filter-out $(SLOW),$(basename $(notdir $(wildcard tests/*.rs))))
 RUN := cargo test --release --locked --no-fail-fast
 
@@ -20,7 +20,7 @@ VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 CONELAB := cargo run --quiet --release --locked --
 OUT := captures/demo
 
-.PHONY: help demo view shot quick test slow python check record fmt dist setup clean
+.PHONY: help demo view shot quick test slow python check record site figures fmt dist setup clean
 
 help: ## Say what there is
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1	\2/p' $(MAKEFILE_LIST) | expand -t 14
@@ -80,6 +80,14 @@ record: ## Measure again what docs/results.md has tables of, and write them (hal
 	@scripts/setup.sh build run
 	@cargo build --release --locked
 	@scripts/record.sh
+	@CONELAB_BLESS=1 cargo test --release --locked --test results
+
+site: ## Build the documentation as a site with search
+	@scripts/setup.sh build
+	@scripts/site.sh
+
+figures: python ## Render the pictures of the documents again that show no times
+	@target/venv/bin/python scripts/figures.py
 	@CONELAB_BLESS=1 cargo test --release --locked --test results
 
 fmt: ## Format the source

@@ -618,6 +618,72 @@ fn steadiness() -> String {
     format!("*{}*\n\n{}", record.said, table(&head, &lines))
 }
 
+/// FLIP of each preset in each scene of a record.
+fn gallery(name: &str, method: &str) -> String {
+    const PRESETS: [&str; 8] = [
+        "rays",
+        "cones",
+        "thesis",
+        "ddgi",
+        "ssgi and rays",
+        "ssgi",
+        "lpv",
+        "rsm",
+    ];
+    let record = record(name);
+    let scenes = in_order(record.lines.iter().map(|l| l["scene"].as_str()));
+    let of = |preset: &str, scene: &str| {
+        let is = |l: &&BTreeMap<String, String>| l[method] == preset && l["scene"] == scene;
+        record.lines.iter().find(is)
+    };
+    let presets: Vec<&str> = PRESETS
+        .into_iter()
+        .filter(|p| scenes.iter().any(|s| of(p, s).is_some()))
+        .collect();
+    let line = |scene: &&str| -> Vec<String> {
+        let score = |preset: &&str| {
+            of(preset, scene).map_or("-".into(), |l| format!("{:.3}", number(l, "total flip")))
+        };
+        std::iter::once(format!("`{}`", scene_name(scene)))
+            .chain(presets.iter().map(score))
+            .collect()
+    };
+    let lines: Vec<Vec<String>> = scenes.iter().map(line).collect();
+    let mut head = vec!["scene"];
+    head.extend(&presets);
+    format!("*{}*\n\n{}", record.said, table(&head, &lines))
+}
+
+/// Scene of the README's strip of pictures: a test scene.
+const STRIP: &str = "sky-window";
+
+/// Error and time of the pictures in the README's strip.
+fn strip() -> String {
+    let record = record("scenes");
+    let names = ["thesis", "cones", "rays"];
+    let of = |name: &str, column: &str| {
+        let is = |l: &&BTreeMap<String, String>| l["experiment"] == name && l["scene"] == STRIP;
+        number(record.lines.iter().find(is).unwrap(), column)
+    };
+    let row = |title: &str, column: &str, last: &str| -> Vec<String> {
+        let cells = names.iter().map(|name| format!("{:.2}", of(name, column)));
+        std::iter::once(title.into())
+            .chain(cells)
+            .chain([last.into()])
+            .collect()
+    };
+    let lines = [
+        row("FLIP, 0 is equal", "total flip", "reference"),
+        row("ms a frame", "total median ms", "1024 samples"),
+    ];
+    let head = ["", "thesis", "narrow cones", "rays", "path tracer"];
+    let said = format!(
+        "The test scene `{STRIP}` at 480x270, against all bounces. {}",
+        record.said
+    );
+    format!("{}\n*{said}*\n", table(&head, &lines))
+}
+
 fn block(name: &str) -> String {
     match name {
         "moving" | "actors" => moving(name),
@@ -630,6 +696,9 @@ fn block(name: &str) -> String {
         "fronts" => fronts(),
         "methods" => methods(),
         "steadiness" => steadiness(),
+        "strip" => strip(),
+        "gallery" => gallery("scenes", "experiment"),
+        "gallery families" => gallery("families", "method"),
         times_of => times(times_of),
     }
 }
@@ -682,11 +751,9 @@ fn figures_of_the_readme_are_those_recorded() {
     for figure in [
         format!("is off by {low:+.0} to {high:+.0} %"),
         format!(
-            "takes {:.1} ms (1920x1080, 160^3, {chip}), {:.1} ms of it final shading",
+            "takes {:.1} ms (1920x1080, 160^3, {chip}), {moving:.1} ms if only the camera moves",
             of("total"),
-            of("final shading")
         ),
-        format!("A frame takes {moving:.1} ms if only the camera moves"),
         format!("miss {missed:.1} % of the cells that triangles overlap in Sponza (128^3)"),
     ] {
         assert!(
@@ -698,8 +765,13 @@ fn figures_of_the_readme_are_those_recorded() {
 
 #[test]
 fn tables_say_what_was_recorded() {
-    for (page, least) in [("results.md", 8), ("families.md", 4)] {
-        let path = root().join("docs").join(page);
+    for (page, least) in [
+        ("docs/results.md", 8),
+        ("docs/families.md", 4),
+        ("README.md", 1),
+        ("docs/gallery.md", 2),
+    ] {
+        let path = root().join(page);
         let text = std::fs::read_to_string(&path).unwrap();
         let (mut out, mut skips, mut blocks) = (String::new(), false, 0);
         for line in text.lines() {
@@ -718,13 +790,13 @@ fn tables_say_what_was_recorded() {
             }
         }
         assert!(!skips, "a table of {page} has no end");
-        assert!(blocks >= least, "docs/{page} has {blocks} tables");
+        assert!(blocks >= least, "{page} has {blocks} tables");
         if std::env::var_os("CONELAB_BLESS").is_some() {
             std::fs::write(&path, out).unwrap();
         } else {
             assert!(
                 out == text,
-                "docs/{page} does not say what docs/recorded holds: CONELAB_BLESS=1 writes it anew"
+                "{page} does not say what docs/recorded holds: CONELAB_BLESS=1 writes it anew"
             );
         }
     }
