@@ -22,8 +22,8 @@ ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 #: Size of the pictures in docs/recorded/scenes.csv.
 SIZE = (480, 270)
-#: Samples per pixel of shown references, which the strip shows at half their size.
-SAMPLES = 256
+#: Samples per pixel of references. A page shows the strip's at half its size, which averages four pixels.
+SAMPLES = 64
 
 
 def save(array: np.ndarray, path: Path) -> None:
@@ -66,7 +66,7 @@ def tutorials(lab: conelab.Lab) -> None:
         source.text = source.text.replace(shown, f"{shown} * vec3(1.0, 0.7, 0.4)")
     save(tinted.render().picture, first / "tinted.jpg")
     tinted.close()
-    where = {"scene": "street", "size": SIZE}
+    where = {"scene": "street", "size": (240, 135)}
     reference = lab.open("rays", **where).reference(SAMPLES)
     maps = []
     for name in ("rays", "thesis"):
