@@ -85,7 +85,7 @@ def triangles(scene: str) -> int:
 def gallery(lab: conelab.Lab, chosen: list[str], columns: int = 3) -> None:
     scenes = {name: about for name, about in lab.scenes().items() if not name.endswith(".ron")}
     for scene in chosen or scenes:
-        save(rendered(lab, "rays", scene=scene, size=SIZE), DOCS / f"gallery/{scene}.jpg")
+        save(rendered(lab, "rays", scene=scene, size=(320, 180)), DOCS / f"gallery/{scene}.jpg")
     cells = [
         f"![{name}](gallery/{name}.jpg)<br>`{name}`, {triangles(name):,} triangles: {about}"
         for name, about in scenes.items()
