@@ -43,7 +43,7 @@ view: ## Open the workbench
 	@cargo build --release --locked
 	@$(CONELAB) view $(ARGS)
 
-shot: ## Take the README's picture of the workbench
+shot: ## Take the picture of the workbench in docs/workbench.md
 	@scripts/setup.sh build run
 	@$(CONELAB) screenshot configs/cones.ron --scene atrium --size 800x600 --window 1600x900 \
 		--click Compare --click "cones | rays" --click timers --click Chart --click "Render reference" \

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Renders pictures of the documents that need no times of a GPU: the README's strip, the gallery, the tutorials.
 
-    scripts/figures.py [strip] [tutorials] [gallery[=SCENE,...]]      all when none is named
+    scripts/figures.py [strip] [tutorials] [pages] [gallery[=SCENE,...]]      all when none is named
 
 Needs the Python module with matplotlib (`make python`) and the program (CONELAB, or target/release/conelab).
 CONELAB_DEVICE chooses the device. `CONELAB_BLESS=1 cargo test --release --test results` writes the numbers next to the pictures.
@@ -11,6 +11,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -20,10 +21,12 @@ import conelab
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
-#: Size of the pictures in docs/recorded/scenes.csv.
-SIZE = (480, 270)
-#: Samples per pixel of references. A page shows the strip's at half its size, which averages four pixels.
-SAMPLES = 64
+#: Size of the strip's pictures: as large as the README shows them.
+SIZE = (240, 135)
+#: The gallery's voxels, so that a software device takes minutes for all scenes.
+COARSE = {"voxel_dim": 64, "shadow_dim": 1024}
+#: Samples per pixel of references.
+SAMPLES = 96
 
 
 def save(array: np.ndarray, path: Path) -> None:
@@ -76,16 +79,76 @@ def tutorials(lab: conelab.Lab) -> None:
     save(row(maps), DOCS / "compare-methods/flip.jpg")
 
 
+def render(*arguments: str) -> np.ndarray:
+    """A picture of the command line."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "picture.png"
+        subprocess.run([program(), "render", *arguments, "-o", path], check=True, capture_output=True, cwd=ROOT)
+        return np.asarray(Image.open(path).convert("RGB"))
+
+
+def pages(lab: conelab.Lab) -> None:
+    """Pictures of the how-to and reference pages, as small as they are shown."""
+    tour = {"size": (320, 180), "voxel_dim": 64, "shadow_dim": 1024}
+    save(rendered(lab, "cones", scene="atrium", probe=(95, 160), **tour), DOCS / "how-to/probe.jpg")
+    warps = {"scene": "atrium", "size": (320, 180), "shadow_dim": 1024}
+    cascades = rendered(lab, "warps", voxel_dim=48, density="surfaces", **warps)
+    finest = rendered(lab, "warps", voxel_dim=48, view="voxels", voxel_view_cascade=0, **warps)
+    curved = {"cascades": 1, "warp": "perspective", "warp_near": 2.0, "density": "surfaces"}
+    save(row([cascades, finest, rendered(lab, "warps", voxel_dim=32, **curved, **warps)]), DOCS / "how-to/warps.jpg")
+    with tempfile.TemporaryDirectory() as folder:
+        box = lab.open("rays", scene="cornell").export_scene(Path(folder) / "box.glb")
+        own = Path(folder) / "own.ron"
+        bulb = 'Point(name: "bulb", color: (9, 8, 6), position: (1.2, 4.2, 1.2), shadow: true)'
+        own.write_text(f'(models: [(file: "box.glb", lights: false)], lights: [{bulb}], sky: (0, 0, 0))')
+        scenes = [rendered(lab, "rays", scene=str(scene), **tour) for scene in (box, own)]
+    save(row(scenes), DOCS / "own-scene/box.jpg")
+    save(rendered(lab, "rays", scene="configs/scenes/shapes.ron", **tour), DOCS / "scene-files/shapes.jpg")
+    box = {"scene": "cornell", "size": (240, 180), "voxel_dim": 64, "shadow_dim": 1024}
+    exact = lab.open("rays", **box)
+    thesis = lab.open("thesis", **box)
+    score = thesis.score(exact.parts()["total"], parts=["total"])
+    maps = score.maps()
+    relative = (np.log10(maps["relativeSquaredError"] + 1e-12) + 4.0) / 6.0
+    errors = [conelab.heat(m) for m in (maps["flip"], relative, maps["structure"] / 0.5)]
+    save(row([score.parts["total"].displayed(), *errors]), DOCS / "metrics/maps.jpg")
+    small = lab.open("rays", scene="cornell", size=(160, 120))
+    samples = [small.reference(n).parts["total"].displayed() for n in (32, 128, 512)]
+    save(row(samples), DOCS / "reference/samples.jpg")
+    path = (
+        "--path",
+        "configs/paths/atrium.ron",
+        "--size",
+        "240x135",
+        "--set",
+        "voxel_dim=64",
+        "--set",
+        "shadow_dim=1024",
+    )
+    times = [render("configs/rays.ron", "--time", t, *path) for t in ("0", "10", "20", "30")]
+    save(row(times), DOCS / "experiments/path.jpg")
+    save(render("configs/tour.ron", "--size", "640x360", "--timers", "stages"), DOCS / "stats/timers.jpg")
+    thin = {"scene": "thin-walls", "size": (320, 180), "shadow_dim": 1024}
+    leak = [rendered(lab, "cones", voxel_dim=n, **thin) for n in (16, 128)]
+    save(row(leak), DOCS / "troubleshooting/leak.jpg")
+    rooms = ("furnace", "white-sky", "cornell")
+    trials = [rendered(lab, "rays", scene=room, size=(240, 180), voxel_dim=64) for room in rooms]
+    save(row(trials), DOCS / "trials/rooms.jpg")
+
+
+def program() -> str:
+    return os.environ.get("CONELAB", str(ROOT / "target/release/conelab"))
+
+
 def triangles(scene: str) -> int:
-    program = os.environ.get("CONELAB", ROOT / "target/release/conelab")
-    text = subprocess.run([program, "scene", scene, "--json", "-"], check=True, capture_output=True, text=True).stdout
+    text = subprocess.run([program(), "scene", scene, "--json", "-"], check=True, capture_output=True, text=True).stdout
     return int(json.loads(text)["triangles"])
 
 
 def gallery(lab: conelab.Lab, chosen: list[str], columns: int = 3) -> None:
     scenes = {name: about for name, about in lab.scenes().items() if not name.endswith(".ron")}
     for scene in chosen or scenes:
-        save(rendered(lab, "rays", scene=scene, size=(320, 180)), DOCS / f"gallery/{scene}.jpg")
+        save(rendered(lab, "rays", scene=scene, size=(320, 180), **COARSE), DOCS / f"gallery/{scene}.jpg")
     cells = [
         f"![{name}](gallery/{name}.jpg)<br>`{name}`, {triangles(name):,} triangles: {about}"
         for name, about in scenes.items()
@@ -100,13 +163,13 @@ def gallery(lab: conelab.Lab, chosen: list[str], columns: int = 3) -> None:
 
 
 def main() -> None:
-    wanted = sys.argv[1:] or ["strip", "tutorials", "gallery"]
+    wanted = sys.argv[1:] or ["strip", "tutorials", "pages", "gallery"]
     with conelab.Lab(home=ROOT) as lab:
         for name, _, scenes in (word.partition("=") for word in wanted):
             if name == "gallery":
                 gallery(lab, scenes.split(",") if scenes else [])
             else:
-                {"strip": strip, "tutorials": tutorials}[name](lab)
+                {"strip": strip, "tutorials": tutorials, "pages": pages}[name](lab)
 
 
 if __name__ == "__main__":
