@@ -632,6 +632,11 @@ fn graph_explains_itself() {
         "{dot}"
     );
 
+    // Those of an experiment have its values.
+    let params = graph(&["configs/tour.ron", "--params", "--set", "exposure=1"]);
+    for value in ["  voxel_dim = 64 voxels  (a whole number, 16 to 512; default: 160;", "  exposure = 1.0 stops"] {
+        assert!(params.contains(value), "{params}");
+    }
     let params = graph(&["passes/rays.ron", "--params"]);
     assert!(
         params.contains("  voxel_dim = 160 voxels  (a whole number, 16 to 512; plain: 128)\n      Edge of the volume"),

@@ -161,9 +161,7 @@ fn session(
     let (mut session, _) = lab
         .prepare(&look(time, settings), scene.clone(), |_| Ok(wanted))
         .unwrap();
-    for _ in 0..frames {
-        session.frame(0.0).unwrap();
-    }
+    session.run(frames).unwrap();
     session
 }
 

@@ -202,9 +202,7 @@ fn every_pinned_parameter_changes_the_picture() {
                 common::experiment("cornell", (48, 36), &[&small[..], set].concat());
             experiment.graph = graph.into();
             let mut session = common::prepare(&lab, &experiment, &["display"]);
-            for _ in 0..3 {
-                session.frame(0.0).unwrap();
-            }
+            session.run(3).unwrap();
             session.finish().unwrap();
             session.texels("display", 0, 0).unwrap().bytes
         };

@@ -174,9 +174,7 @@ fn a_lamp_whose_mask_cuts_out_half_gives_half_its_light() {
             CameraChoice::Placed(PlacedCamera::new((0.0, 0.3, 0.3), (0.0, 0.0, 0.0), 20.0));
         let wanted = vec!["diffuseIndirect".to_owned()];
         let (mut session, _) = lab.prepare(&look, Arc::new(scene), |_| Ok(wanted)).unwrap();
-        for _ in 0..4 {
-            session.frame(0.0).unwrap();
-        }
+        session.run(4).unwrap();
         session.finish().unwrap();
         mean(&floats(&mut session, "diffuseIndirect", 0))
     });
@@ -237,9 +235,7 @@ fn a_small_lamp_lights_its_room() {
         let (mut session, _) = lab
             .prepare(&look, scene("small-quad"), |_| Ok(wanted))
             .unwrap();
-        for _ in 0..16 {
-            session.frame(0.0).unwrap();
-        }
+        session.run(16).unwrap();
         session.finish().unwrap();
         let energy = mean(&floats(&mut session, "radiance", 0)) / truth.parts["total"].mean.mean();
         // The floor before the boxes: the lowest rows of the picture.
@@ -299,9 +295,7 @@ fn a_bulb_of_a_few_voxels_lights_its_room_evenly() {
         let (mut session, _) = lab
             .prepare(&look, scene(&name), |_| Ok(vec!["diffuseIndirect".into()]))
             .unwrap();
-        for _ in 0..24 {
-            session.frame(0.0).unwrap();
-        }
+        session.run(24).unwrap();
         session.finish().unwrap();
         let found = floats(&mut session, "diffuseIndirect", 0);
         let expected = &truth.parts["diffuse"].mean.rgb;
@@ -347,9 +341,7 @@ fn no_order_of_a_files_triangles_shows_in_a_hundred_lamps() {
         let (mut session, _) = lab
             .prepare(&look, scene, |_| Ok(vec!["radiance".into()]))
             .unwrap();
-        for _ in 0..2 {
-            session.frame(0.0).unwrap();
-        }
+        session.run(2).unwrap();
         session.finish().unwrap();
         assert_clean(&lab);
         session.texels("radiance", 0, 0).unwrap().bytes

@@ -56,9 +56,7 @@ fn converged(lab: &Lab, e: &Experiment) -> BTreeMap<String, Linear> {
         Ok(parts_of(graph).into_iter().map(|p| p.texture).collect())
     });
     let (mut session, _) = prepared.unwrap_or_else(|e| panic!("{e}"));
-    for _ in 0..session.converging_frames().max(1) {
-        session.frame(0.0).unwrap();
-    }
+    session.run(session.converging_frames().max(1)).unwrap();
     session.finish().unwrap();
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
     let parts = session.parts().unwrap();
@@ -503,9 +501,7 @@ fn every_parameter_of_a_family_changes_its_light() {
         };
         let e = experiment(family, &[small, set].concat(), scene, (40, 30));
         let mut session = prepare(&lab, &e, &["radiance"]);
-        for _ in 0..4 {
-            session.frame(0.0).unwrap();
-        }
+        session.run(4).unwrap();
         session.finish().unwrap();
         session.texels("radiance", 0, 0).unwrap().bytes
     };

@@ -156,9 +156,7 @@ fn white_balls_vanish_under_a_white_sky() {
     let (mut session, _) = lab
         .prepare(&e, scene.clone(), |_| Ok(vec!["radiance".into()]))
         .unwrap();
-    for _ in 0..24 {
-        session.frame(0.0).unwrap();
-    }
+    session.run(24).unwrap();
     session.finish().unwrap();
     let picture: Vec<f64> = floats(&mut session, "radiance", 0)
         .iter()

@@ -73,9 +73,7 @@ impl Bench {
     fn run(&self, lab: &Lab, wanted: &[&str], frames: usize) -> Session {
         let experiment = Experiment::read(&self.path("configs/run.ron")).unwrap();
         let mut session = prepare(lab, &experiment, wanted);
-        for _ in 0..frames {
-            session.frame(0.0).unwrap();
-        }
+        session.run(frames).unwrap();
         session.finish().unwrap();
         assert_clean(lab);
         session

@@ -401,9 +401,7 @@ fn method(
     let (mut session, _) = lab
         .prepare(e, scene.clone(), |_| Ok(vec![texture.to_owned()]))
         .unwrap();
-    for _ in 0..*frames {
-        session.frame(0.0).unwrap();
-    }
+    session.run(*frames).unwrap();
     session.finish().unwrap();
     assert_clean(lab);
     floats(&mut session, texture, 0)

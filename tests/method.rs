@@ -19,9 +19,7 @@ const QUICK: (&str, &str) = ("shadow_dim", "512");
 #[track_caller]
 fn frames(lab: &Lab, experiment: &Experiment, wanted: &[&str], count: usize) -> Session {
     let mut session = prepare(lab, experiment, wanted);
-    for _ in 0..count {
-        session.frame(0.0).unwrap();
-    }
+    session.run(count).unwrap();
     session.finish().unwrap();
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
     assert_clean(lab);

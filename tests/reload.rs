@@ -105,9 +105,7 @@ impl Bench {
 }
 
 fn frames(session: &mut Session, count: usize) {
-    for _ in 0..count {
-        session.frame(0.0).unwrap();
-    }
+    session.run(count).unwrap();
     session.finish().unwrap();
 }
 

@@ -506,9 +506,7 @@ fn voxels_have_the_colours_of_vertices() {
             let (mut session, _) = lab
                 .prepare(&e, scene.clone(), |_| Ok(vec!["diffuseIndirect".into()]))
                 .unwrap();
-            for _ in 0..16 {
-                session.frame(0.0).unwrap();
-            }
+            session.run(16).unwrap();
             session.finish().unwrap();
             assert_clean(&lab);
             let texels = floats(&mut session, "diffuseIndirect", 0);

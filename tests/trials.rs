@@ -56,9 +56,9 @@ fn run(lab: &Lab, experiment: &Experiment, samples: u64) -> (BTreeMap<String, Li
         Ok(wanted)
     });
     let (mut session, _) = prepared.unwrap_or_else(|e| panic!("{e}"));
-    for _ in 0..turns.map_or(1, |t| t.parse().unwrap()) {
-        session.frame(0.0).unwrap();
-    }
+    session
+        .run(turns.map_or(1, |t| t.parse().unwrap()))
+        .unwrap();
     session.finish().unwrap();
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
     let parts = session.parts().unwrap();

@@ -37,9 +37,7 @@ fn session(lab: &Lab, scene: &Arc<Scene>, settings: &[(&str, &str)]) -> Session 
 
 /// Runs frames, and gives what pixels have gathered in the last one.
 fn gathered(lab: &Lab, session: &mut Session, frames: usize) -> Vec<[f32; 4]> {
-    for _ in 0..frames {
-        session.frame(0.0).unwrap();
-    }
+    session.run(frames).unwrap();
     session.finish().unwrap();
     assert_clean(lab);
     floats(session, "gatheredDiffuse", 0)

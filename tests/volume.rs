@@ -32,9 +32,7 @@ fn frames(lab: &Lab, experiment: &Experiment, wanted: &[&str], count: usize) -> 
 
 #[track_caller]
 fn run(session: &mut Session, count: usize) {
-    for _ in 0..count {
-        session.frame(0.0).unwrap();
-    }
+    session.run(count).unwrap();
     session.finish().unwrap();
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
 }

@@ -66,13 +66,13 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
         warn!("{warning}");
     }
     let graph = loaded.graph;
+    let params = params(args, &graph, experiment.as_ref())?;
     if args.params {
-        say_part!("{}", report::params(&graph.params));
+        say_part!("{}", report::params(&params));
         if graph.values.is_empty() {
             return Ok(());
         }
     }
-    let params = params(args, &graph, experiment.as_ref())?;
     let size = match &args.size {
         Some(text) => super::adapt::parse_size(text)?,
         None => experiment.as_ref().map_or((1280, 720), |e| e.size),

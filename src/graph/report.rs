@@ -360,15 +360,19 @@ pub fn params(params: &Params) -> String {
         } else {
             format!(" {}", p.unit)
         };
+        let value = params.get(&p.name).unwrap_or(&p.default);
+        let default = match *value == p.default {
+            true => String::new(),
+            false => format!("; default: {}", p.default),
+        };
         let plain = p
             .plain
             .as_ref()
             .map_or(String::new(), |v| format!("; plain: {v}"));
         let _ = writeln!(
             out,
-            "  {} = {}{unit}  ({}{range}{plain})",
+            "  {} = {value}{unit}  ({}{range}{default}{plain})",
             p.name,
-            p.default,
             p.expected()
         );
         let _ = writeln!(out, "      {}", p.help);
