@@ -35,10 +35,11 @@ def save(array: np.ndarray, path: Path) -> None:
     print(path.relative_to(ROOT), flush=True)
 
 
-def rendered(lab: conelab.Lab, experiment: str, **settings) -> np.ndarray:
+def rendered(lab: conelab.Lab, experiment: str, frames: int | None = None, **settings) -> np.ndarray:
+    """A picture after some frames; when it has converged if none are given."""
     opened = lab.open(experiment, **settings)
     try:
-        return np.array(opened.render().picture[..., :3])
+        return np.array(opened.render(frames).picture[..., :3])
     finally:
         opened.close()
 
@@ -91,7 +92,7 @@ def pages(lab: conelab.Lab) -> None:
     """Pictures of the how-to and reference pages, as small as they are shown."""
     tour = {"size": (320, 180), "voxel_dim": 64, "shadow_dim": 1024}
     save(rendered(lab, "cones", scene="atrium", probe=(95, 160), **tour), DOCS / "how-to/probe.jpg")
-    warps = {"scene": "atrium", "size": (320, 180), "shadow_dim": 1024}
+    warps = {"scene": "atrium", "size": (320, 180), "shadow_dim": 1024, "frames": 2}
     cascades = rendered(lab, "warps", voxel_dim=48, density="surfaces", **warps)
     finest = rendered(lab, "warps", voxel_dim=48, view="voxels", voxel_view_cascade=0, **warps)
     curved = {"cascades": 1, "warp": "perspective", "warp_near": 2.0, "density": "surfaces"}

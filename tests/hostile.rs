@@ -26,8 +26,9 @@ fn open(path: impl AsRef<Path>) -> Result<Scene, SceneError> {
     let opened = Scene::open(&path.as_ref().to_string_lossy(), &|_, _| {
         ControlFlow::Continue(())
     });
+    // Work that grows with the square of these files takes minutes; a busy machine takes seconds.
     assert!(
-        begun.elapsed() < Duration::from_secs(5),
+        begun.elapsed() < Duration::from_secs(30),
         "{} took {:?}",
         path.as_ref().display(),
         begun.elapsed()
