@@ -26,7 +26,7 @@ SIZE = (240, 135)
 #: The gallery's voxels, so that a software device takes minutes for all scenes.
 COARSE = {"voxel_dim": 64, "shadow_dim": 1024}
 #: Samples per pixel of references.
-SAMPLES = 96
+SAMPLES = 64
 
 
 def save(array: np.ndarray, path: Path) -> None:
@@ -113,9 +113,9 @@ def pages(lab: conelab.Lab) -> None:
     relative = (np.log10(maps["relativeSquaredError"] + 1e-12) + 4.0) / 6.0
     errors = [conelab.heat(m) for m in (maps["flip"], relative, maps["structure"] / 0.5)]
     save(row([score.parts["total"].displayed(), *errors]), DOCS / "metrics/maps.jpg")
-    small = lab.open("rays", scene="cornell", size=(160, 120))
-    samples = [small.reference(n).parts["total"].displayed() for n in (32, 128, 512)]
-    save(row(samples), DOCS / "reference/samples.jpg")
+    small = lab.open("rays", scene="cornell", size=(96, 72))
+    samples = [small.reference(n).parts["total"].displayed() for n in (32, 64, 256)]
+    save(row([s.repeat(2, axis=0).repeat(2, axis=1) for s in samples]), DOCS / "reference/samples.jpg")
     path = (
         "--path",
         "configs/paths/atrium.ron",

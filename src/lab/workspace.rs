@@ -13,6 +13,7 @@ use crate::graph::{Evaluated, Graph};
 use crate::scene::Scene;
 use crate::shader::ShaderCompiler;
 use crate::vulkan::DeviceInfo;
+use rayon::prelude::{IntoParallelRefIterator, ParallelExtend, ParallelIterator};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -185,15 +186,17 @@ impl Workspace {
                 settings.push(params);
             }
         }
-        for params in settings {
-            let found = match self.link(&graph, &Runs::all(&graph, &params)) {
-                Ok((_, warnings)) => warnings,
-                Err(errors) => errors,
-            };
-            for finding in found {
-                if !findings.contains(&finding) {
-                    findings.push(finding);
-                }
+        let found = |params: &Params| match self.link(&graph, &Runs::all(&graph, params)) {
+            Ok((_, warnings)) => warnings,
+            Err(errors) => errors,
+        };
+        // The first setting fills the cache: the others differ in a few shaders each.
+        let (first, others) = settings.split_at(1);
+        let mut all: Vec<Vec<Diagnostic>> = first.iter().map(found).collect();
+        all.par_extend(others.par_iter().map(found));
+        for finding in all.into_iter().flatten() {
+            if !findings.contains(&finding) {
+                findings.push(finding);
             }
         }
         findings
