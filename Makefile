@@ -10,8 +10,10 @@ SIZE ?= 1280x720
 ARGS ?=
 # Run only the tests whose names hold this, for example: make test TESTS=voxel
 TESTS ?=
-# Suites that take a minute and more; what takes a second at most; and all others (files of tests/).
-SLOW := area_lights chart converge emitters energy families furnace incremental normal_maps options readme reference runs scales settings stability sweep turns tutorial volume window
+# Slow suites that run at once: many use one core, because compilers of shaders do.
+JOBS ?= 2
+# Suites that take a minute and more, the longest first; what takes a second at most; and all others (files of tests/).
+SLOW := incremental readme families reference converge emitters window options furnace sweep stability energy area_lights turns chart volume tutorial scales runs normal_maps settings
 QUICK := effects floors graph_errors hostile metrics pages results structure
 SUITES := $(filter-out $(SLOW),$(basename $(notdir $(wildcard tests/*.rs))))
 RUN := cargo test --release --locked --no-fail-fast
@@ -58,9 +60,11 @@ test: ## Run the tests, but for the slow suites
 	@cargo test --release --locked --quiet --doc $(TESTS)
 	@$(RUN) --lib --bins $(SUITES:%=--test %) $(TESTS)
 
-slow: ## Run the slow suites
+slow: ## Run the slow suites, JOBS side by side
 	@scripts/setup.sh build run test
-	@$(RUN) $(SLOW:%=--test %) $(TESTS)
+	@$(RUN) --no-run $(SLOW:%=--test %)
+	@printf '%s\n' $(SLOW) | xargs -P $(JOBS) -I{} bash -c \
+		'said=$$($(RUN) --test {} $(TESTS) 2>&1) && code=0 || code=$$?; printf "%s\n" "$$said"; exit $$code'
 
 python: ## Install the Python module in target/venv, and run its tests and notebooks
 	@scripts/setup.sh build run test python

@@ -634,7 +634,10 @@ fn graph_explains_itself() {
 
     // Those of an experiment have its values.
     let params = graph(&["configs/tour.ron", "--params", "--set", "exposure=1"]);
-    for value in ["  voxel_dim = 64 voxels  (a whole number, 16 to 512; default: 160;", "  exposure = 1.0 stops"] {
+    for value in [
+        "  voxel_dim = 64 voxels  (a whole number, 16 to 512; default: 160;",
+        "  exposure = 1.0 stops",
+    ] {
         assert!(params.contains(value), "{params}");
     }
     let params = graph(&["passes/rays.ron", "--params"]);
