@@ -129,9 +129,6 @@ def pages(lab: conelab.Lab) -> None:
     times = [render("configs/rays.ron", "--time", t, *path) for t in ("0", "10", "20", "30")]
     save(row(times), DOCS / "experiments/path.jpg")
     save(render("configs/tour.ron", "--size", "640x360", "--timers", "stages"), DOCS / "stats/timers.jpg")
-    thin = {"scene": "thin-walls", "size": (320, 180), "shadow_dim": 1024}
-    leak = [rendered(lab, "cones", voxel_dim=n, **thin) for n in (16, 128)]
-    save(row(leak), DOCS / "troubleshooting/leak.jpg")
     rooms = ("furnace", "white-sky", "cornell")
     trials = [rendered(lab, "rays", scene=room, size=(240, 180), voxel_dim=64) for room in rooms]
     save(row(trials), DOCS / "trials/rooms.jpg")
