@@ -13,7 +13,9 @@ TESTS ?=
 # Slow suites that run at once: many use one core, because compilers of shaders do.
 JOBS ?= 2
 # Suites that take a minute and more, the longest first; what takes a second at most; and all others (files of tests/).
-SLOW := incremental readme families reference converge emitters window options furnace sweep stability energy area_lights turns chart volume tutorial scales runs normal_maps settings
+SLOW := incremental readme families reference converge emitters options furnace sweep stability energy area_lights turns volume tutorial scales normal_maps settings $(ALONE)
+# Slow suites that drive a window: they wait for pictures, and so run alone.
+ALONE := window chart runs
 QUICK := effects floors graph_errors hostile metrics pages results structure
 SUITES := $(filter-out $(SLOW),$(basename $(notdir $(wildcard tests/*.rs))))
 RUN := cargo test --release --locked --no-fail-fast
@@ -60,11 +62,12 @@ test: ## Run the tests, but for the slow suites
 	@cargo test --release --locked --quiet --doc $(TESTS)
 	@$(RUN) --lib --bins $(SUITES:%=--test %) $(TESTS)
 
-slow: ## Run the slow suites, JOBS side by side
+slow: ## Run the slow suites, JOBS (2) side by side
 	@scripts/setup.sh build run test
 	@$(RUN) --no-run $(SLOW:%=--test %)
-	@printf '%s\n' $(SLOW) | xargs -P $(JOBS) -I{} bash -c \
+	@printf '%s\n' $(filter-out $(ALONE),$(SLOW)) | xargs -P $(JOBS) -I{} bash -c \
 		'said=$$($(RUN) --test {} $(TESTS) 2>&1) && code=0 || code=$$?; printf "%s\n" "$$said"; exit $$code'
+	@$(RUN) $(ALONE:%=--test %) $(TESTS)
 
 python: ## Install the Python module in target/venv, and run its tests and notebooks
 	@scripts/setup.sh build run test python
