@@ -12,10 +12,10 @@ ARGS ?=
 TESTS ?=
 # Slow suites that run at once: many use one core, because compilers of shaders do.
 JOBS ?= 2
-# Suites that take a minute and more, the longest first; what takes a second at most; and all others (files of tests/).
-SLOW := incremental readme families reference converge emitters options furnace sweep stability energy area_lights turns volume tutorial scales normal_maps settings $(ALONE)
 # Slow suites that drive a window: they wait for pictures, and so run alone.
 ALONE := window chart runs
+# Suites that take a minute and more, the longest first; what takes a second at most; and all others (files of tests/).
+SLOW := incremental readme families reference converge emitters options furnace sweep stability energy area_lights turns volume tutorial scales normal_maps settings $(ALONE)
 QUICK := effects floors graph_errors hostile metrics pages results structure
 SUITES := $(filter-out $(SLOW),$(basename $(notdir $(wildcard tests/*.rs))))
 RUN := cargo test --release --locked --no-fail-fast
