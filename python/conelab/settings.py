@@ -160,7 +160,7 @@ class Attributes:
     density_axis: int
     """Axis along which density counts under a warp function: 0 x, 1 y, 2 z (0, 0 to 2)."""
     diffuse_aperture: float
-    """Full angle of a diffuse cone. 0: 6 degrees in cones.ron, 45 in thesis.ron. Wider cones are blurrier and accumulate occlusion along walls; narrower ones take more samples (0.0 deg, 0 to 120)."""
+    """Full angle of a diffuse cone. 0: 6 degrees in cones.ron, 45 in thesis.ron. Wider cones are blurrier and accumulate occlusion along walls; narrower ones take more samples. In cones.ron a cone is an exact ray while it is thinner than 2^-lod_offset voxels: on coarse grids small apertures give the same picture (0.0 deg, 0 to 120)."""
     diffuse_steps: int
     """Maximum samples of a diffuse cone, and of a specular one in cones.ron. A cone normally ends earlier, at the border of the volume or when it is blocked (256 samples, 1 to 512)."""
     emitter_rays: int
