@@ -632,7 +632,7 @@ fn graph_explains_itself() {
         "{dot}"
     );
 
-    // Those of an experiment have its values.
+    // An experiment's own values are printed.
     let params = graph(&["configs/tour.ron", "--params", "--set", "exposure=1"]);
     for value in [
         "  voxel_dim = 64 voxels  (a whole number, 16 to 512; default: 160;",

@@ -1,4 +1,4 @@
-//! The reference pages of parameters and of the command line are what the program declares.
+//! Compares the reference pages of parameters and of the command line with the program.
 //! `CONELAB_BLESS=1 cargo test --release --test pages` writes them again.
 
 mod common;
@@ -41,7 +41,7 @@ fn value(value: &Value) -> String {
     }
 }
 
-/// What a parameter may be.
+/// The values that a parameter accepts.
 fn domain(param: &Param) -> String {
     let unit = if param.unit.is_empty() {
         String::new()

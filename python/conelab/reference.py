@@ -66,7 +66,7 @@ class Picture:
             exposure: stops.
         """
         shown = np.frombuffer(_conelab.displayed(self._given(), exposure), np.uint8)
-        return shown.reshape(self.array.shape)
+        return shown.reshape(self.array.shape).copy()
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
         array: np.ndarray[Any, Any] = np.array(self.array, dtype=dtype) if copy else np.asarray(self.array, dtype=dtype)

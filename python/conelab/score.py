@@ -230,4 +230,4 @@ def _compared(
 def heat(values: np.ndarray) -> np.ndarray:
     """A map from 0 to 1 in the colours of the program's error maps (magma): [height, width, 3], uint8."""
     array = np.ascontiguousarray(values, np.float32)
-    return np.frombuffer(_conelab.magma(array.tobytes()), np.uint8).reshape(*array.shape, 3)
+    return np.frombuffer(_conelab.magma(array.tobytes()), np.uint8).reshape(*array.shape, 3).copy()

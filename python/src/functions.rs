@@ -199,7 +199,9 @@ pub fn displayed<'py>(
     let picture = linear(picture)?;
     let bytes: Vec<u8> = py.detach(|| {
         let channels = picture.rgb.as_flattened().iter();
-        let exposed = channels.map(|c| display(picture.kind, c * exposure.exp2()));
+        // Infinity divided by infinity would be black.
+        let exposed = channels.map(|c| (c * exposure.exp2()).clamp(0.0, f32::MAX));
+        let exposed = exposed.map(|c| display(picture.kind, c));
         exposed.map(|v| (v * 255.0).round() as u8).collect()
     });
     Ok(PyBytes::new(py, &bytes))

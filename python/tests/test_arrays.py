@@ -86,6 +86,8 @@ def test_displayed_pictures_and_maps_have_the_colours_of_the_program():
     grey = conelab.Picture(np.full((1, 2, 3), [1.0, 1.0, 0.0], np.float32))
     assert grey.displayed().tolist() == [[[188, 188, 0]] * 2]
     assert (grey.displayed(exposure=-100.0) == 0).all()
+    odd = conelab.Picture(np.array([[[np.inf, np.nan, -1.0]]], np.float32))
+    assert odd.displayed().tolist() == [[[255, 0, 0]]]
     assert conelab.Picture(np.ones((1, 1, 3)), "openness").displayed().tolist() == [[[255, 255, 255]]]
     # The ends of magma, as matplotlib has it.
     assert conelab.heat(np.array([[0.0, 1.0, np.nan]])).tolist() == [[[0, 0, 4], [252, 253, 191], [252, 253, 191]]]

@@ -58,8 +58,8 @@ impl<'c> Row<'c> {
     }
 }
 
-/// Points whose scores are those of an earlier point with the same reference, to the bit, with the first of these: what
-/// differs between their settings does not change the picture.
+/// For each point with bit-identical scores to an earlier one against the same reference, the id of the first: the
+/// settings that differ do not change the picture.
 fn same_scores<'c>(rows: &[Row<'c>]) -> BTreeMap<&'c str, &'c str> {
     let mut first = BTreeMap::new();
     let mut same = BTreeMap::new();
