@@ -27,6 +27,7 @@ pub struct Events {
     place: Option<egui::Rect>,
     nodes: HashMap<u64, accesskit::Node>,
     sent: Instant,
+    released: bool,
 }
 
 impl Events {
@@ -44,6 +45,7 @@ impl Events {
             place: None,
             nodes: HashMap::new(),
             sent: now,
+            released: false,
         })
     }
 
@@ -68,9 +70,29 @@ impl Events {
         self.place = place;
     }
 
-    /// Writes where the widgets are, in points, when that changed; at most some times a second.
+    /// Writes where the widgets are, in points, when that changed; at most some times a second,
+    /// but always in the frame after a button of the mouse was `released`, followed by that event.
     /// `true` if more is to be written later.
-    pub fn widgets(&mut self, update: Option<&accesskit::TreeUpdate>, scale: f32) -> bool {
+    pub fn widgets(
+        &mut self,
+        update: Option<&accesskit::TreeUpdate>,
+        scale: f32,
+        released: bool,
+    ) -> bool {
+        let answered = std::mem::replace(&mut self.released, released);
+        let more = self.changed_widgets(update, scale, answered);
+        if answered {
+            self.write("released", json!({}));
+        }
+        more || released
+    }
+
+    fn changed_widgets(
+        &mut self,
+        update: Option<&accesskit::TreeUpdate>,
+        scale: f32,
+        at_once: bool,
+    ) -> bool {
         if let Some(update) = update {
             self.nodes = update
                 .nodes
@@ -95,7 +117,7 @@ impl Events {
         if list == self.widgets {
             return false;
         }
-        if self.sent.elapsed().as_millis() < 100 {
+        if !at_once && self.sent.elapsed().as_millis() < 100 {
             return true;
         }
         self.sent = Instant::now();

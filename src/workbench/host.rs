@@ -53,11 +53,17 @@ impl Workbench {
         self.pixels.clear();
     }
 
-    /// Logs where the widgets are, for scripts; `true` if there is more to log.
-    pub fn describe(&mut self, update: Option<&egui::accesskit::TreeUpdate>, scale: f32) -> bool {
+    /// Logs where the widgets are, and that a button of the mouse was `released`, for scripts.
+    /// `true` if there is more to log.
+    pub fn describe(
+        &mut self,
+        update: Option<&egui::accesskit::TreeUpdate>,
+        scale: f32,
+        released: bool,
+    ) -> bool {
         self.setup.events.as_mut().is_some_and(|e| {
             e.place(self.view.place, scale);
-            e.widgets(update, scale)
+            e.widgets(update, scale, released)
         })
     }
 

@@ -485,10 +485,28 @@ impl WindowDriver {
         self.fake(6, 0, at);
     }
 
-    pub fn click_at(&self, at: (f64, f64)) {
+    pub fn click_at(&mut self, at: (f64, f64)) {
         self.fake(6, 0, at);
         self.fake(4, 1, at);
-        self.fake(5, 1, at);
+        self.release(1, at);
+    }
+
+    /// Releases a button, and waits until the program has laid out what follows from it: else the
+    /// next click would go to where a widget was. A dialog of the system may never answer.
+    fn release(&mut self, button: u8, at: (f64, f64)) {
+        let since = self.now();
+        let until = Instant::now() + PATIENCE / 4;
+        self.fake(5, button, at);
+        loop {
+            self.now();
+            let answered = self.events[since..]
+                .iter()
+                .any(|e| e["event"] == "released");
+            if answered || Instant::now() > until {
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
     }
 
     /// Clicks the right button on a widget.
@@ -496,11 +514,11 @@ impl WindowDriver {
         let at = centre(self.find(role, label));
         self.fake(6, 0, at);
         self.fake(4, 3, at);
-        self.fake(5, 3, at);
+        self.release(3, at);
     }
 
     /// Presses at one place and releases at another.
-    pub fn drag(&self, from: (f64, f64), to: (f64, f64)) {
+    pub fn drag(&mut self, from: (f64, f64), to: (f64, f64)) {
         self.fake(6, 0, from);
         self.fake(4, 1, from);
         for i in 1..=4 {
@@ -511,7 +529,7 @@ impl WindowDriver {
                 (from.0 + t * (to.0 - from.0), from.1 + t * (to.1 - from.1)),
             );
         }
-        self.fake(5, 1, to);
+        self.release(1, to);
     }
 
     /// Gives the lower of the two stacks of tabs most of the height.

@@ -160,11 +160,16 @@ impl App {
             return Ok(());
         }
         let input = open.state.take_egui_input(&open.window);
+        let released = input
+            .events
+            .iter()
+            .any(|e| matches!(e, egui::Event::PointerButton { pressed: false, .. }));
         let textures = &open.textures;
         let mut output = self.context.run_ui(input, |ui| workbench.ui(ui, textures));
         let more = workbench.describe(
             output.platform_output.accesskit_update.as_ref(),
             output.pixels_per_point,
+            released,
         );
         output.platform_output.accesskit_update = None;
         open.state
