@@ -8,7 +8,7 @@ target=${CARGO_TARGET_DIR:-target}
 mdbook=$target/mdbook/bin/mdbook
 if [[ $("$mdbook" --version 2>/dev/null || true) != *"$mdbook_version" ]]; then
     echo "site: building mdBook $mdbook_version (minutes, once)" >&2
-    CARGO_PROFILE_RELEASE_OPT_LEVEL=1 CARGO_PROFILE_RELEASE_LTO=off cargo install --quiet --locked --root "$target/mdbook" --no-default-features --features search "mdbook@$mdbook_version"
+    CARGO_PROFILE_RELEASE_OPT_LEVEL=0 CARGO_PROFILE_RELEASE_LTO=off cargo install --quiet --locked --root "$target/mdbook" --no-default-features --features search "mdbook@$mdbook_version"
 fi
 
 work=$(mktemp -d "$target/site.XXXXXX")
