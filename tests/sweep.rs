@@ -304,6 +304,26 @@ fn scenes_that_are_not_on_the_machine_fail_alone() {
     assert!(said.contains("2 points: 2 done, 0 failed"), "{said}");
 }
 
+/// Charts mark the points whose parameters are all the defaults of their graph. The scene is absent, so that nothing is rendered.
+#[test]
+fn presets_are_the_points_without_a_parameter() {
+    let home = home();
+    let absent = "(models: [(file: \"nowhere/gone.obj\")])";
+    std::fs::write(home.path().join("gone.ron"), absent).unwrap();
+    let path = home.path().join("presets.ron");
+    let text = "(experiments: [\"configs/rays.ron\"], set: { \"scene\": \"gone.ron\", \"size\": (64, 36) },\n\
+                axes: [Settings(name: \"method\", values: { \"rays\": {}, \"coarse\": { \"voxel_dim\": 64 }, \"cones\": { \"graph\": \"cones.ron\" } })])";
+    std::fs::write(&path, text).unwrap();
+    let folder = home.path().join("out");
+    fails(&mut sweep(home.path(), &path, &folder, &[]));
+    let list: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.join("sweep.json")).unwrap()).unwrap();
+    let presets: Vec<_> = (0..3)
+        .map(|i| list["points"][i]["preset"].as_bool())
+        .collect();
+    assert_eq!(presets, [Some(true), Some(false), Some(true)]);
+}
+
 #[test]
 fn a_report_of_several_scenes_has_them_in_a_table_worst_first() {
     let home = home();

@@ -17,6 +17,9 @@ const MAX_PICTURES: usize = 64 << 20;
 pub struct Dot {
     pub id: String,
     pub labels: IndexMap<String, String>,
+    /// Whether all parameters are the graph's defaults.
+    #[serde(skip)]
+    pub preset: bool,
     /// Index of the subject in [`Data`].
     pub subject: usize,
     /// GPU time of a frame, median and 95th percentile, ms.
@@ -79,7 +82,7 @@ pub struct Scored {
     pub noise: Option<f64>,
     /// Experiment or graph of the dot, empty if there is only one.
     pub experiment: String,
-    /// Whether it is an unchanged experiment among points with other settings.
+    /// Whether all parameters are the graph's defaults.
     pub preset: bool,
 }
 
@@ -214,6 +217,7 @@ impl Data {
             };
             data.dots.push(Dot {
                 labels: planned.labels.clone(),
+                preset: planned.preset,
                 subject,
                 picture: picture("pictures"),
                 error_map: picture("errors"),
@@ -297,7 +301,6 @@ impl Data {
                 experiment_of(dot)
             };
             let experiment = experiment.to_string();
-            let preset = self.names.len() > 1 && dot.labels.keys().all(|name| name == "experiment");
             (error.is_finite() && dot.ms > 0.0).then_some(Scored {
                 index,
                 ms: dot.ms,
@@ -305,7 +308,7 @@ impl Data {
                 noisy,
                 noise: dot.noise.get(part).and_then(|n| n.in_mean(metric)),
                 experiment,
-                preset,
+                preset: dot.preset,
             })
         })
         .collect()

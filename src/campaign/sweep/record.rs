@@ -42,6 +42,9 @@ pub struct ManifestPoint {
     pub id: String,
     /// Values by the names of the varied settings.
     pub labels: IndexMap<String, String>,
+    /// Whether all parameters are the graph's defaults.
+    #[serde(default)]
+    pub preset: bool,
 }
 
 /// Description of a finished point.
@@ -82,6 +85,7 @@ impl ManifestPoint {
         ManifestPoint {
             id: point.id.clone(),
             labels: point.labels.iter().cloned().collect(),
+            preset: point.experiment.params.is_empty(),
         }
     }
 }
