@@ -14,20 +14,28 @@ sponza=configs/scenes/sponza.ron
 work=captures/recorded
 mkdir -p "$out" "$work"
 
+# The arguments as one would type them.
+typed() {
+    local word
+    for word; do
+        if [[ $word =~ ^[A-Za-z0-9_./,=:-]+$ ]]; then printf ' %s' "$word"; else printf " '%s'" "$word"; fi
+    done
+}
+
 # keep NAME JSON CSV COMMAND...: the figures in the file CSV, under the command and the device that is named in the file JSON.
 keep() {
     local name=$1 json=$2 csv=$3 device driver
     shift 3
     device=$(grep -m1 -o '"name": *"[^"]*"' "$json" | cut -d'"' -f4)
     driver=$(grep -m1 -o '"driver": *"[^"]*"' "$json" | cut -d'"' -f4)
-    { printf '# conelab %s\n# %s, %s\n# %s\n' "$*" "$device" "$driver" "$commit" && cat "$csv"; } >"$out/$name.csv"
+    { printf '# conelab%s\n# %s, %s\n# %s\n' "$(typed "$@")" "$device" "$driver" "$commit" && cat "$csv"; } >"$out/$name.csv"
 }
 
 # keep_json NAME JSON COMMAND...: the same of figures that are JSON, with their device in them.
 keep_json() {
     local name=$1 json=$2
     shift 2
-    { printf '{"command": "conelab %s", "commit": "%s", "record":\n' "$*" "$commit" && cat "$json" && echo '}'; } >"$out/$name.json"
+    { printf '{"command": "conelab%s", "commit": "%s", "record":\n' "$(typed "$@")" "$commit" && cat "$json" && echo '}'; } >"$out/$name.json"
 }
 
 # What the program is asked for, as one would type it.
