@@ -5,6 +5,7 @@
 
 use super::colour::luminance;
 use super::flip::flip;
+use rayon::prelude::*;
 
 /// The evaluator's filmic curve, (a c^2 + b c) / (d c^2 + e c + f): Narkowicz 2015 with an exposure
 /// of 0.6.
@@ -73,8 +74,11 @@ pub fn hdr_flip(
     for i in 0..at.count {
         let stops =
             at.start + f64::from(i) * (at.stop - at.start) / f64::from((at.count - 1).max(1));
+        let exposure = stops.exp2();
         let shown = |rgb: &[[f32; 3]]| -> Vec<[f32; 3]> {
-            rgb.iter().map(|c| c.map(|v| filmic(v, stops))).collect()
+            rgb.par_iter()
+                .map(|c| c.map(|v| filmic(v, exposure)))
+                .collect()
         };
         for (worst, error) in worst
             .iter_mut()
@@ -86,8 +90,8 @@ pub fn hdr_flip(
     worst
 }
 
-fn filmic(value: f32, stops: f64) -> f32 {
-    let c = f64::from(value) * stops.exp2();
+fn filmic(value: f32, exposure: f64) -> f32 {
+    let c = f64::from(value) * exposure;
     let [a, b, d, e, f] = ACES;
     ((c * (a * c + b)) / (c * (d * c + e) + f)).clamp(0.0, 1.0) as f32
 }
