@@ -136,7 +136,6 @@ fn spawn(
     }
     let program = program
         .env("DISPLAY", display)
-        .env("CONELAB_CACHE", home.path().join("cache"))
         .env("WINIT_X11_SCALE_FACTOR", "1")
         .envs(variables.iter().copied())
         .env_remove("WAYLAND_DISPLAY")
