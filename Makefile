@@ -12,6 +12,9 @@ ARGS ?=
 TESTS ?=
 # Slow suites that run at once: many use one core, because compilers of shaders do.
 JOBS ?= 2
+# No slow suite begins later than this, seconds, and the first of them is this one. The suites of windows run in any case.
+BUDGET ?= 86400
+TURN ?= 0
 # Slow suites that drive a window: they wait for pictures, and so run alone.
 ALONE := window chart runs
 # Suites that take a minute and more, the longest first; what takes a second at most; and all others (files of tests/).
@@ -62,11 +65,14 @@ test: ## Run the tests, but for the slow suites
 	@cargo test --release --locked --quiet --doc $(TESTS)
 	@$(RUN) --lib --bins $(SUITES:%=--test %) $(TESTS)
 
-slow: ## Run the slow suites, JOBS (2) side by side
+slow: ## Run the slow suites, JOBS (2) side by side; with BUDGET, those that begin within so many seconds, from the TURN-th on
 	@scripts/setup.sh build run test
 	@$(RUN) --no-run $(SLOW:%=--test %)
-	@printf '%s\n' $(filter-out $(ALONE),$(SLOW)) | xargs -P $(JOBS) -I{} bash -c \
-		'said=$$($(RUN) --test {} $(TESTS) 2>&1) && code=0 || code=$$?; printf "%s\n" "$$said"; exit $$code'
+	@until=$$(($$(date +%s) + $(BUDGET))); export until; \
+	printf '%s\n' $(filter-out $(ALONE),$(SLOW)) | \
+		awk -v turn=$(TURN) '{ suite[NR] = $$0 } END { for (i = 0; i < NR; i++) print suite[(i + turn) % NR + 1] }' | \
+		xargs -P $(JOBS) -I{} bash -c '[[ $$(date +%s) -lt $$until ]] || { echo "no time left for the suite {}"; exit 0; }; \
+		said=$$($(RUN) --test {} $(TESTS) 2>&1) && code=0 || code=$$?; printf "%s\n" "$$said"; exit $$code'
 	@$(RUN) $(ALONE:%=--test %) $(TESTS)
 
 python: ## Install the Python module in target/venv, and run its tests and notebooks
