@@ -278,7 +278,8 @@ class Experiment:
     ) -> Score:
         """Scores the parts of the picture against a reference by every metric; FLIP takes a second per megapixel.
 
-        The parts are those of the last frame; an experiment that has not rendered renders first, as `render()` does.
+        The parts are those of the last frame; an experiment that has not rendered, or did not keep
+        its parts (`keep` of `Lab.open`), renders first, as `render()` does.
 
         Args:
             reference: a `Reference`; or a picture of the total: an array [height, width, 3] of linear radiance, or the

@@ -192,14 +192,14 @@ class Lab:
             reference: samples per pixel of references, which are traced first, or a bound on their noise, as
                 "flip=0.01"; when absent, references that exist are used.
             frames: timed frames of each point; 20 when absent.
-            warmup: least number of frames before them; 40 when absent.
+            warmup: least number of frames before them; 40 when absent. A graph that needs more to converge gets them.
             folder: for the points, in the working folder if relative; `captures/sweeps/NAME` when absent. Points in it are
                 not measured again; `sweep.csv` there is replaced by each sweep.
             again: measure failed points again.
             settings: of every point.
 
         Returns:
-            A row for each point; columns as in `sweep.csv` (docs/sweeps.md), numbers as numbers. `lab.open(row)` opens a
+            A row for each point; columns as in `sweep.csv` (docs/tables.md), numbers as numbers. `lab.open(row)` opens a
             row.
 
         Raises:
