@@ -479,7 +479,8 @@ fn points_are_scored_against_references_and_measured_again_when_there_is_one() {
         "{rows:?}"
     );
     assert_eq!(rows[0]["direct relmse"], rows[1]["direct relmse"]);
-    assert_eq!(rows[0]["reference samples"], "64 bounces: 64");
+    assert_eq!(rows[0]["reference samples, 64 bounces"], "64");
+    assert_eq!(rows[0]["experiment"], "cones");
 
     let wrote = succeeds(conelab(home.path()).arg("report").arg(&folder));
     let chart = std::fs::read_to_string(folder.join("report/total-relmse.svg")).unwrap();

@@ -12,6 +12,7 @@ import conelab
 WILD = {
     "PART": r"(total|direct|diffuse|specular|occlusion|total, \d+ bounces)",
     "METRIC": "(" + "|".join(conelab.metrics().index) + ")",
+    "N": r"\d+",
     "TITLE": "(" + "|".join(re.escape(title) for title in conelab.metrics()["title"]) + ")",
 }
 
@@ -40,7 +41,7 @@ def check(path, heading, settings=(), passes=()):
     unknown = [title for title in titles if not any(re.fullmatch(p, title) for p in known)]
     assert not unknown, f"{heading}: docs/tables.md does not have {unknown}"
     always = [column for column in patterns if not set(column.split(" ")) & {*wild}]
-    missing = [column for column in always if column not in titles and column != "experiment"]
+    missing = [column for column in always if column not in titles]
     assert not missing, f"{heading}: {path} does not have {missing}"
 
 

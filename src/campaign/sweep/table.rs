@@ -99,6 +99,11 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
     let scores: BTreeSet<(&str, &str)> = parts
         .flat_map(|(part, m)| m.keys().map(|m| (part.as_str(), m.as_str())))
         .collect();
+    let references: BTreeSet<u32> = rows
+        .iter()
+        .filter_map(Row::point)
+        .flat_map(|p| p.references.keys().copied())
+        .collect();
     let same = same_scores(&rows);
     let mut table = Table::new(&rows);
     table.column("id", |r| r.planned.id.clone());
@@ -115,7 +120,8 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
     };
     // An axis of that name has the values that were asked for.
     for (name, value) in [
-        ("graph", of(|s: &Stats| s.graph.clone())),
+        ("experiment", of(|s: &Stats| s.experiment.clone())),
+        ("graph", of(|s| s.graph.clone())),
         ("scene", of(|s| s.scene.clone())),
     ] {
         if !collected.names.iter().any(|n| n == name) {
@@ -128,13 +134,11 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
     table.column("driver", |r| cell(r.record.map(|r| &r.device.driver)));
     table.column("bytes", of(|s| s.total_bytes.to_string()));
     table.column("warnings", of(|s| s.warnings.join("; ")));
-    table.column("reference samples", |r| {
-        let samples = r.point().into_iter().flat_map(|p| &p.references);
-        samples
-            .map(|(bounces, n)| format!("{bounces} bounces: {n}"))
-            .collect::<Vec<_>>()
-            .join("; ")
-    });
+    for bounces in references {
+        table.column(format!("reference samples, {bounces} bounces"), |r| {
+            cell(r.point().and_then(|p| p.references.get(&bounces)))
+        });
+    }
     table.column("same scores as", |r| cell(same.get(r.planned.id.as_str())));
     table.column("error", |r| cell(r.record.and_then(|r| r.error())));
     table.column("total median ms", of(|s| s.total_gpu_ms.median.to_string()));
