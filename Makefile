@@ -15,6 +15,8 @@ JOBS ?= 2
 # No slow suite begins later than this, seconds, and the first of them is this one. The suites of windows run in any case.
 BUDGET ?= 86400
 TURN ?= 0
+# Takes 25 minutes of a core, and so is left out wherever there is a budget.
+LONG := $(if $(filter-out 86400,$(BUDGET)),families)
 # Slow suites that drive a window: they wait for pictures, and so run alone.
 ALONE := window chart runs
 # Suites that take a minute and more, the longest first; what takes a second at most; and all others (files of tests/).
@@ -68,8 +70,9 @@ test: ## Run the tests, but for the slow suites
 slow: ## Run the slow suites, JOBS (2) side by side; with BUDGET, those that begin within so many seconds, from the TURN-th on
 	@scripts/setup.sh build run test
 	@$(RUN) --no-run $(SLOW:%=--test %)
+	@$(if $(LONG),echo "no time for the suite $(LONG)")
 	@until=$$(($$(date +%s) + $(BUDGET))); export until; \
-	printf '%s\n' $(filter-out $(ALONE),$(SLOW)) | \
+	printf '%s\n' $(filter-out $(ALONE) $(LONG),$(SLOW)) | \
 		awk -v turn=$(TURN) '{ suite[NR] = $$0 } END { for (i = 0; i < NR; i++) print suite[(i + turn) % NR + 1] }' | \
 		xargs -P $(JOBS) -I{} bash -c '[[ $$(date +%s) -lt $$until ]] || { echo "no time left for the suite {}"; exit 0; }; \
 		said=$$($(RUN) --test {} $(TESTS) 2>&1) && code=0 || code=$$?; printf "%s\n" "$$said"; exit $$code'
