@@ -520,6 +520,8 @@ impl WindowDriver {
     pub fn drag(&mut self, from: (f64, f64), to: (f64, f64)) {
         self.fake(6, 0, from);
         self.fake(4, 1, from);
+        // Press and release in one frame are a click.
+        std::thread::sleep(Duration::from_millis(250));
         for i in 1..=4 {
             let t = f64::from(i) / 4.0;
             self.fake(
