@@ -12,7 +12,7 @@ ARGS ?=
 TESTS ?=
 # Slow suites that run at once: many use one core, because compilers of shaders do.
 JOBS ?= 2
-# No slow suite begins later than this, seconds, and the first of them is this one. The suites of windows run in any case.
+# BUDGET: seconds within which slow suites may begin. TURN: the number of the first one. Suites of windows always run.
 BUDGET ?= 86400
 TURN ?= 0
 # Takes 25 minutes of a core, and so is left out wherever there is a budget.
@@ -67,7 +67,7 @@ test: ## Run the tests, but for the slow suites
 	@cargo test --release --locked --quiet --doc $(TESTS)
 	@$(RUN) --lib --bins $(SUITES:%=--test %) $(TESTS)
 
-slow: ## Run the slow suites, JOBS (2) side by side; with BUDGET, those that begin within so many seconds, from the TURN-th on
+slow: ## Run the slow suites, JOBS (2) side by side, but families where there is a BUDGET
 	@scripts/setup.sh build run test
 	@$(RUN) --no-run $(SLOW:%=--test %)
 	@$(if $(LONG),echo "no time for the suite $(LONG)")

@@ -25,17 +25,17 @@ DOCS = ROOT / "docs"
 SIZE = (240, 135)
 #: The gallery's voxels on a software device, so that all scenes take minutes.
 COARSE = {"voxel_dim": 64, "shadow_dim": 1024}
-#: What each family does worst: name of the picture, graph, scene, settings, and the left upper corner of the crop.
+#: What each family does worst: name of the picture, graph, scene, and the left upper corner of the crop.
 FAILURES = [
-    ("lamp", "rays", "lampshade", {}, (115, 95)),
-    ("mirror", "rays", "gloss", {}, (215, 65)),
-    ("edge", "rays", "door-ajar", {}, (320, 180)),
-    ("thesis", "thesis", "sky-window", {}, (300, 60)),
-    ("ddgi", "ddgi", "corridor", {}, (270, 175)),
-    ("ssgi", "ssgi", "small-quad", {}, (150, 115)),
-    ("ssgi-rays", "ssgi_rays", "door-ajar", {}, (345, 95)),
-    ("rsm", "rsm", "configs/scenes/sponza.ron", {}, (50, 165)),
-    ("lpv", "lpv", "corridor", {}, (180, 90)),
+    ("lamp", "rays", "lampshade", (115, 95)),
+    ("mirror", "rays", "gloss", (215, 65)),
+    ("edge", "rays", "door-ajar", (320, 180)),
+    ("thesis", "thesis", "sky-window", (300, 60)),
+    ("ddgi", "ddgi", "corridor", (270, 175)),
+    ("ssgi", "ssgi", "small-quad", (150, 115)),
+    ("ssgi-rays", "ssgi_rays", "door-ajar", (345, 95)),
+    ("rsm", "rsm", "configs/scenes/sponza.ron", (50, 165)),
+    ("lpv", "lpv", "corridor", (180, 90)),
 ]
 #: Size of the pictures that crops are cut from, and of a crop, which is shown at twice its size.
 WHOLE, CROP = (480, 270), (120, 80)
@@ -86,8 +86,8 @@ def strip(lab: conelab.Lab) -> None:
 
 def failures(lab: conelab.Lab) -> None:
     """Crops of what each family does worst, each beside its reference."""
-    for name, graph, scene, settings, (left, top) in FAILURES:
-        opened = lab.open(graph, scene=scene, size=WHOLE, **settings)
+    for name, graph, scene, (left, top) in FAILURES:
+        opened = lab.open(graph, scene=scene, size=WHOLE)
         method = opened.render().picture
         reference = opened.reference(samples(lab)).parts["total"].displayed()
         opened.close()
