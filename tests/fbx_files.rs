@@ -496,7 +496,7 @@ fn blender_writes_one_scene_in_two_formats() {
     near([ours.fov_y, ours.near], [theirs.fov_y, theirs.near]).unwrap();
 }
 
-/// Opens bytes as a file, within five seconds.
+/// Opens bytes as a file. Work that grows with what a file promises takes minutes; a busy machine takes seconds.
 fn open_bytes(bytes: &[u8]) -> Result<Scene, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.fbx");
@@ -504,7 +504,7 @@ fn open_bytes(bytes: &[u8]) -> Result<Scene, String> {
     let begun = Instant::now();
     let opened = open(&path);
     assert!(
-        begun.elapsed() < Duration::from_secs(5),
+        begun.elapsed() < Duration::from_secs(30),
         "{:?}",
         begun.elapsed()
     );

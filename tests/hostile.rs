@@ -408,7 +408,7 @@ fn only_regular_files_are_opened() {
                 .args([command])
                 .arg(folder.path().join("zero.ron")),
         );
-        assert!(begun.elapsed() < Duration::from_secs(5));
+        assert!(begun.elapsed() < Duration::from_secs(30));
     }
 }
 
@@ -562,7 +562,7 @@ fn includes_that_grow_with_a_power_or_go_in_a_circle_end_at_once() {
         let begun = Instant::now();
         let output = conelab(home.path()).args(["check", file]).output().unwrap();
         assert!(
-            begun.elapsed() < Duration::from_secs(20),
+            begun.elapsed() < Duration::from_secs(60),
             "{file}: {:?}",
             begun.elapsed()
         );

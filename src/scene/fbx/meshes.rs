@@ -35,22 +35,24 @@ pub(super) fn read(
     warnings: &mut Warnings,
     progress: Progress,
 ) -> Result<(Vec<RawMesh>, Rigs, bool), String> {
-    // Nodes may share meshes, so a small file could otherwise fill the memory.
+    // Nodes may share meshes, so a small file could otherwise fill the memory. Counted before any is read: what
+    // is refused costs no time.
     let mut room = MANY + bytes;
+    for item in wanted {
+        let from = of(file, item)?;
+        let left = room.checked_sub(from.num_triangles.saturating_mul(3));
+        room = left.ok_or_else(|| {
+            let why = "with it there are many more corners than the file holds bytes";
+            format!("mesh '{}': {why}", name(from))
+        })?;
+    }
     let mut used = false;
     let (mut meshes, mut rigs) = (Vec::new(), Rigs::new());
     for item in wanted {
         if progress.stopped() {
             return Err(String::new());
         }
-        let from = file.meshes.as_ref().get(item.mesh as usize);
-        let from = from.ok_or_else(damaged)?;
-        let name = name(from);
-        let left = room.checked_sub(from.num_triangles.saturating_mul(3));
-        room = left.ok_or_else(|| {
-            let why = "with it there are many more corners than the file holds bytes";
-            format!("mesh '{name}': {why}")
-        })?;
+        let from = of(file, item)?;
         let skin = skins::of(from);
         let is_rigged = skin.is_some() || blends::any(from);
         if is_rigged {
@@ -74,7 +76,7 @@ pub(super) fn read(
         let (vertices, indices, sources) = weld_sources(&reader.corners, &reader.sources);
         meshes.push(RawMesh {
             mesh: Mesh {
-                name,
+                name: name(from),
                 vertices,
                 indices,
                 submeshes,
@@ -85,6 +87,12 @@ pub(super) fn read(
         });
     }
     Ok((meshes, rigs, used))
+}
+
+fn of<'a>(file: &'a ufbx::Scene, item: &Wanted) -> Result<&'a From, String> {
+    let meshes = file.meshes.as_ref();
+    let mesh = meshes.get(item.mesh as usize).ok_or_else(damaged)?;
+    Ok(mesh)
 }
 
 /// Its name, or the name of its first node.
