@@ -38,6 +38,7 @@ class Parameters(TypedDict, total=False):
     gather_rest: int
     gbuffer: Literal["auto", "compute", "raster"]
     injection_exposure: float
+    learning: int
     light_bias: float
     lobe_share: float
     lod_offset: float
@@ -183,6 +184,8 @@ class Attributes:
     """Rasteriser of the visible triangles (auto)."""
     injection_exposure: float
     """Radiance of a texel value of 1, because injection writes base colours whatever the lights emit. 0: E / pi for the brightest sun of irradiance E, which was 1 in the published program; 1 without a sun (0.0, 0 to 1e+06)."""
+    learning: int
+    """Samples per pixel that learn where light comes from, before the first sample. They change the noise and not the mean. 0: no learning (8 samples/pixel, 0 to 1024)."""
     light_bias: float
     """Distance from a surfel to the point whose shadow is looked up. Lower values let rough surfaces shadow themselves; higher ones let light past thin walls (0.1 voxels, 0 to 1)."""
     lobe_share: float
@@ -234,7 +237,7 @@ class Attributes:
     rsm_spacing: int
     """Distance of the pixels that gather first. The others interpolate between four of them that see the same surface, or gather too. 1: every pixel gathers (4 pixels, 1 to 16)."""
     samples: int
-    """Samples per pixel and frame. Noise falls as the square root of their number (16 samples/pixel, 1 to 4096)."""
+    """Samples per pixel and frame. Noise falls at least as the square root of their number (16 samples/pixel, 1 to 4096)."""
     screen_miss: Literal["sky", "dark"]
     """Light of directions that meet nothing in the picture (sky)."""
     seed: int

@@ -5,7 +5,7 @@
 #include "lights/direct.glsl"
 #include "reference/hit.glsl"
 #include "common/ggx.glsl"
-#include "common/random.glsl"
+#include "reference/sequence.glsl"
 
 float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
     if (light.of_sky != 0) return 0.0; // part of the sky image
@@ -43,7 +43,7 @@ vec3 areaDirect(Light light, SurfaceHit h, vec4 u) {
     return sum + light.color * lobe.weight * density / (density + reach * reach / (area * emitted));
 }
 
-vec3 directLight(SurfaceHit h, inout Random random) {
+vec3 directLight(SurfaceHit h, inout Sequence random) {
     vec3 sum = vec3(0.0);
     for (uint i = 0; i < sceneInfo.light_count; i++) {
         Light light = lights.lights[i];

@@ -1,6 +1,7 @@
 // Light of emitters: multiple importance sampling of emitter samples and ray hits (balance heuristic; Veach
 // and Guibas 1995).
 #include "lights/emitters.glsl"
+#include "reference/guide.glsl"
 
 // Weight of emission at a ray hit. density: pdf of the ray's direction.
 float shareOfRay(float density, SurfaceHit h, float distance) {
@@ -15,20 +16,21 @@ struct LobeLight {
 
 // Light of one emitter sample. It counts only if the ray to it hits a surface at its distance, which then
 // provides the emission. rays: expected number of rays of the diffuse and the specular lobe.
-LobeLight emitterLight(Surface s, vec3 p, vec3 face, vec3 view, vec2 rays, inout Random random) {
+LobeLight emitterLight(SurfaceHit h, uint guide, vec2 rays, inout Sequence random) {
+    Surface s = h.surface;
     LobeLight none = LobeLight(vec3(0.0), vec3(0.0));
     if (emitters.count == 0) return none;
-    vec3 from = offsetPoint(p, face);
+    vec3 from = offsetPoint(h.position, h.face);
     EmitterSample emitter = sampleEmitter(from, next4(random));
     float cosine = dot(s.normal, emitter.direction);
-    if (emitter.cosine == 0.0 || cosine <= 0.0 || dot(face, emitter.direction) <= 0.0) return none;
+    if (emitter.cosine == 0.0 || cosine <= 0.0 || dot(h.face, emitter.direction) <= 0.0) return none;
     Ray ray = Ray(from, emitter.direction, 1e30);
     Hit hit = traceRay(ray, NO_FOOTPRINT, false);
     if (hit.triangle == NO_HIT || abs(hit.t - emitter.distance) > 1e-3 * emitter.distance) return none;
     float density = directionDensity(emitter.by_area, emitter.distance, emitter.cosine);
     vec3 light = cosine * surfaceOf(hit, ray, NO_FOOTPRINT).emission;
     return LobeLight(
-        light * diffuseBrdf(s) / (density + rays.x * diffuseDensity(s, emitter.direction)),
-        light * specularBrdf(s, view, emitter.direction)
-            / (density + rays.y * specularDensity(s, view, emitter.direction)));
+        light * diffuseBrdf(s) / (density + rays.x * diffuseDirectionDensity(guide, s, emitter.direction)),
+        light * specularBrdf(s, h.view, emitter.direction)
+            / (density + rays.y * specularDensity(s, h.view, emitter.direction)));
 }

@@ -4,39 +4,56 @@
 #include "reference/direct.glsl"
 #include "reference/sky.glsl"
 #include "reference/emitters.glsl"
+#ifdef LEARNS
+#include "reference/guide_record.glsl"
+#endif
+
+// Share of the specular lobe in the reflected light.
+float specularShare(SurfaceHit h) {
+    float shine = luminance(fresnel(h.surface, max(dot(h.surface.normal, h.view), 0.0)));
+    return shine / max(shine + luminance(h.surface.albedo), 1e-6);
+}
 
 // Radiance that arrives at p along -d over at most params.bounces path segments, including this ray. density:
 // pdf of d. sun: the sun of a sky image, returned separately if the first ray escapes.
-vec3 incoming(vec3 p, vec3 d, float density, inout Random random, out bool escaped, out vec3 sun) {
+vec3 incoming(vec3 p, vec3 d, float density, inout Sequence random, out bool escaped, out vec3 sun) {
     vec3 sum = vec3(0.0), weight = vec3(1.0);
     escaped = false;
     sun = vec3(0.0);
+#ifdef LEARNS
+    const int LEARNED = 8;
+    GuideVertex vertices[LEARNED];
+    int learned = 0;
+#endif
     for (int bounce = 1; bounce <= params.bounces; bounce++) {
         Ray ray = Ray(p, d, 1e30);
         Hit hit = traceRay(ray, NO_FOOTPRINT, false);
         if (hit.triangle == NO_HIT) {
             escaped = bounce == 1;
-            if (!skyHasPicture()) return sum + weight * sceneInfo.sky;
-            SkyShine shine = skyShine(d);
-            weight *= lobeShare(shine, density);
+            SkyShine shine = SkyShine(sceneInfo.sky, vec3(0.0), 0.0);
+            if (skyHasPicture()) {
+                shine = skyShine(d);
+                weight *= lobeShare(shine, density);
+            }
             if (escaped) sun = weight * shine.sun;
             else sum += weight * shine.sun;
-            return sum + weight * shine.sky;
+            sum += weight * shine.sky;
+            break;
         }
         SurfaceHit h = surfaceOf(hit, ray, NO_FOOTPRINT);
         vec3 emitted = h.emission * shareOfRay(density, h, hit.t);
         sum += weight * (emitted + directLight(h, random));
-        float shine = luminance(fresnel(h.surface, max(dot(h.surface.normal, h.view), 0.0)));
-        float probability = clamp(shine / max(shine + luminance(h.surface.albedo), 1e-6), 0.05, 0.95);
+        float probability = clamp(specularShare(h), 0.05, 0.95);
         bool last = bounce == params.bounces;
+        uint guide = guideOf(h.position, h.face);
         vec2 sent = last ? vec2(0.0) : vec2(1.0 - probability, probability);
         if (skyHasPicture()) {
-            SkyLight sky = skyLight(h.surface, h.position, h.face, h.view, sent, last, next4(random));
+            SkyLight sky = skyLight(h, guide, sent, last, next4(random));
             sum += weight * (sky.diffuse + sky.specular + sky.direct);
         }
         if (last) break;
         vec4 u = next4(random);
-        LobeLight from_emitters = emitterLight(h.surface, h.position, h.face, h.view, sent, random);
+        LobeLight from_emitters = emitterLight(h, guide, sent, random);
         sum += weight * (from_emitters.diffuse + from_emitters.specular);
         LobeSample next;
         if (u.z < probability) {
@@ -44,20 +61,30 @@ vec3 incoming(vec3 p, vec3 d, float density, inout Random random, out bool escap
             next.weight /= probability;
             density = probability * specularDensity(h.surface, h.view, next.direction);
         } else {
-            next = diffuseSample(h.surface, h.face, u.xy);
+            next = diffuseDirection(guide, h, u.xy, density);
             next.weight /= 1.0 - probability;
-            density = (1.0 - probability) * diffuseDensity(h.surface, next.direction);
+            density *= 1.0 - probability;
         }
         weight *= next.weight;
         if (weight == vec3(0.0)) break;
-        if (bounce > 3) { // Russian roulette (Arvo and Kirk 1990)
-            float survival = clamp(max(weight.r, max(weight.g, weight.b)), 0.05, 1.0);
+        // Russian roulette (Arvo and Kirk 1990) by reflectance. By weight it would end paths that head for
+        // the light, which weigh least: five times the noise in a corridor with two bends.
+        if (bounce > 3) {
+            vec3 reflected = h.surface.albedo + h.surface.f0;
+            float survival = clamp(max(reflected.r, max(reflected.g, reflected.b)), 0.05, 1.0);
             if (u.w >= survival) break;
             weight /= survival;
         }
         p = offsetPoint(h.position, h.face);
         d = next.direction;
+#ifdef LEARNS
+        if (u.z >= probability && learned < LEARNED)
+            vertices[learned++] = guideVertex(guide, h.surface, d, density, sum, weight);
+#endif
     }
+#ifdef LEARNS
+    for (int i = 0; i < learned; i++) guideRecord(vertices[i], sum);
+#endif
     return sum;
 }
 

@@ -3,7 +3,7 @@
 // heuristic).
 #ifndef REFERENCE_SKY_GLSL
 #define REFERENCE_SKY_GLSL
-#include "common/ggx.glsl"
+#include "reference/guide.glsl"
 #include "lights/sky.glsl"
 
 // Layout: width, height, 2 unused words; radiance around the sun, 1 unused word; cumulative sums of rows,
@@ -84,19 +84,21 @@ float lobeShare(SkyShine shine, float density) {
     return density / max(density + shine.density, 1e-30);
 }
 
-// Light of one direction sampled from the sky at p. samples: expected number of directions that the diffuse
+// Light of one direction sampled from the sky. samples: expected number of directions that the diffuse
 // and the specular lobe sample here. At a path's end (only_sun) they sample none, and only the sun counts,
 // like a light.
-SkyLight skyLight(Surface s, vec3 p, vec3 face, vec3 view, vec2 samples, bool only_sun, vec4 u) {
+SkyLight skyLight(SurfaceHit h, uint guide, vec2 samples, bool only_sun, vec4 u) {
+    Surface s = h.surface;
     vec3 d;
     SkyShine shine = drawSky(u, d);
     float cosine = dot(s.normal, d);
-    if (cosine <= 0.0 || dot(face, d) <= 0.0 || shine.density <= 0.0 || only_sun && shine.sun == vec3(0.0))
+    if (cosine <= 0.0 || dot(h.face, d) <= 0.0 || shine.density <= 0.0 || only_sun && shine.sun == vec3(0.0))
         return NO_SKY_LIGHT;
-    if (blocked(Ray(offsetPoint(p, face), d, 1e30))) return NO_SKY_LIGHT;
-    vec2 densities = shine.density + samples * vec2(diffuseDensity(s, d), specularDensity(s, view, d));
+    if (blocked(Ray(offsetPoint(h.position, h.face), d, 1e30))) return NO_SKY_LIGHT;
+    vec2 densities = shine.density
+        + samples * vec2(diffuseDirectionDensity(guide, s, d), specularDensity(s, h.view, d));
     vec3 diffuse = diffuseBrdf(s) * cosine / densities.x,
-        specular = specularBrdf(s, view, d) * cosine / densities.y;
+        specular = specularBrdf(s, h.view, d) * cosine / densities.y;
     vec3 sky = only_sun ? vec3(0.0) : shine.sky;
     return SkyLight(diffuse * sky, specular * sky, (diffuse + specular) * shine.sun);
 }
