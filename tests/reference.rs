@@ -390,9 +390,9 @@ fn learning_where_light_comes_from_lowers_the_noise_and_keeps_the_mean() {
     let home = common::home();
     let lab = lab(home.path());
     let corridor = scene("corridor");
-    let [cosine, learned] = ["0", "256"].map(|learning| {
-        let experiment = experiment("corridor", (24, 18), &[("learning", learning)]);
-        trace(&lab, &experiment, &corridor, 64, 128)
+    let [cosine, learned] = ["0", "64"].map(|learning| {
+        let experiment = experiment("corridor", (48, 36), &[("learning", learning)]);
+        trace(&lab, &experiment, &corridor, 64, 64)
     });
     // Few bright pixels decide relMSE.
     let noise = |r: &Reference| r.parts["total"].noise.flip;

@@ -16,19 +16,14 @@ vec3 cosineSample(vec2 u) {
     return vec3(r * cos(angle), r * sin(angle), sqrt(max(1.0 - u.x, 0.0)));
 }
 
-// face: the triangle's normal on the viewer's side. Directions below it get weight 0.
-LobeSample diffuseSample(Surface s, vec3 face, vec2 u) {
-    vec3 l = frameOf(s.normal) * cosineSample(u);
-    return LobeSample(l, dot(l, face) > 0.0 ? s.albedo : vec3(0.0));
-}
-
 // Smith's masking of a direction at this cosine from the normal.
 float maskingOf(float cosine, float alpha) {
     float a2 = alpha * alpha;
     return 2.0 * cosine / (cosine + sqrt(a2 + (1.0 - a2) * cosine * cosine));
 }
 
-// Heitz 2018, "Sampling the GGX Distribution of Visible Normals".
+// Heitz 2018, "Sampling the GGX Distribution of Visible Normals". face: the triangle's normal on the viewer's
+// side. Directions below it get weight 0.
 LobeSample specularSample(Surface s, vec3 face, vec3 view, vec2 u) {
     mat3 frame = frameOf(s.normal);
     vec3 v = view * frame;
@@ -50,7 +45,7 @@ LobeSample specularSample(Surface s, vec3 face, vec3 view, vec2 u) {
     return LobeSample(l, lobeWeight(s, frame, v, local, half_way, maskingOf(v.z, alpha)));
 }
 
-// Pdfs of diffuseSample and specularSample at l [1/sr].
+// Pdfs of cosineSample around the normal and of specularSample at l [1/sr].
 float diffuseDensity(Surface s, vec3 l) {
     return max(dot(s.normal, l), 0.0) / PI;
 }

@@ -13,22 +13,25 @@ layout(std430) readonly buffer GuideSums {
 layout(std430) writeonly buffer GuideEnds { float ends[]; } guideEnds;
 
 const float UNIFORM = 0.1; // share that is never learned
-const float UNSEEN = 32.0 * 16.0; // sum of a distribution below which most of it is uniform
+const float FEW = 64.0; // paths of a distribution of which half is learned
+
+float light(uint guide, uint x, uint y) {
+    return float(guideSums.sums[65 * guide + 8 * y + x]);
+}
 
 void main() {
-    uint first = gl_GlobalInvocationID.x * 64;
-    if (first >= guideEnds.ends.length()) return;
+    uint guide = gl_GlobalInvocationID.x;
+    if (64 * guide >= guideEnds.ends.length()) return;
     float sum = 0.0;
-    for (uint i = 0; i < 64; i++) sum += float(guideSums.sums[first + i]);
-    float learned = (1.0 - UNIFORM) * sum / (sum + UNSEEN), end = 0.0;
+    for (uint i = 0; i < 64; i++) sum += light(guide, i % 8, i / 8);
+    float paths = float(guideSums.sums[65 * guide + 64]);
+    float learned = sum > 0.0 ? (1.0 - UNIFORM) * paths / (paths + FEW) : 0.0, end = 0.0;
     for (uint i = 0; i < 64; i++) {
         uint x = i % 8, y = i / 8;
-        float near = float(guideSums.sums[first + 8 * y + max(x, 1) - 1])
-            + float(guideSums.sums[first + 8 * y + min(x + 1, 7)])
-            + float(guideSums.sums[first + 8 * ((y + 1) % 8) + x])
-            + float(guideSums.sums[first + 8 * ((y + 7) % 8) + x]);
-        float smoothed = 0.5 * float(guideSums.sums[first + i]) + 0.125 * near;
-        end += sum > 0.0 ? mix(1.0 / 64.0, smoothed / sum, learned) : 1.0 / 64.0;
-        guideEnds.ends[first + i] = i == 63 ? 1.0 : min(end, 1.0);
+        float near = light(guide, max(x, 1) - 1, y) + light(guide, min(x + 1, 7), y)
+            + light(guide, x, (y + 1) % 8) + light(guide, x, (y + 7) % 8);
+        float smoothed = 0.5 * light(guide, x, y) + 0.125 * near;
+        end += mix(1.0 / 64.0, smoothed / max(sum, 1.0), learned);
+        guideEnds.ends[64 * guide + i] = i == 63 ? 1.0 : min(end, 1.0);
     }
 }

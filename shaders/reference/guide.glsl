@@ -42,7 +42,7 @@ vec3 fromSide(uint guide, vec3 v) {
 
 // v: around the side's axis.
 uint guideBin(vec3 v) {
-    vec2 at = vec2(1.0 - v.z * v.z, fract(atan(v.y, v.x) / (2.0 * PI) + 1.0));
+    vec2 at = vec2(max(1.0 - v.z * v.z, 0.0), fract(atan(v.y, v.x) / (2.0 * PI) + 1.0));
     uvec2 bin = min(uvec2(8.0 * at), uvec2(7));
     return 8 * bin.y + bin.x;
 }
@@ -51,7 +51,7 @@ bool isGuided() {
 #ifdef LEARNS
     return false;
 #else
-    return params.learning > 0;
+    return params.learning > 1;
 #endif
 }
 
@@ -83,12 +83,16 @@ float diffuseDirectionDensity(uint guide, Surface s, vec3 d) {
     return 0.5 * (by_cosine + share * float(GUIDE_BINS) * v.z / PI);
 }
 
+// Whether diffuseDirection samples the cosine.
+bool isByCosine(float u) {
+    return !isGuided() || u < 0.5;
+}
+
 // A direction for diffuse reflection, its weight (BRDF * cosine / pdf) and its pdf.
 LobeSample diffuseDirection(uint guide, SurfaceHit h, vec2 u, out float density) {
-    vec3 d;
-    if (!isGuided()) d = frameOf(h.surface.normal) * cosineSample(u);
-    else if (u.x < 0.5) d = frameOf(h.surface.normal) * cosineSample(vec2(2.0 * u.x, u.y));
-    else d = guideDirection(guide, vec2(2.0 * u.x - 1.0, u.y));
+    bool by_cosine = isByCosine(u.x);
+    if (isGuided()) u.x = fract(2.0 * u.x);
+    vec3 d = by_cosine ? frameOf(h.surface.normal) * cosineSample(u) : guideDirection(guide, u);
     density = diffuseDirectionDensity(guide, h.surface, d);
     float cosine = dot(h.surface.normal, d);
     bool above = cosine > 0.0 && dot(d, h.face) > 0.0;

@@ -70,7 +70,8 @@ vec3 incoming(vec3 p, vec3 d, float density, inout Sequence random, out bool esc
         // Russian roulette (Arvo and Kirk 1990) by reflectance. By weight it would end paths that head for
         // the light, which weigh least: five times the noise in a corridor with two bends.
         if (bounce > 3) {
-            vec3 reflected = h.surface.albedo + h.surface.f0;
+            vec3 reflected = h.surface.albedo
+                + fresnel(h.surface, max(dot(h.surface.normal, h.view), 0.0));
             float survival = clamp(max(reflected.r, max(reflected.g, reflected.b)), 0.05, 1.0);
             if (u.w >= survival) break;
             weight /= survival;

@@ -67,7 +67,9 @@ void main() {
                 * incoming(p, one.direction, density, random, escaped, sun);
             direct += one.weight * sun;
         }
-        open = escaped ? max(dot(one.direction, h.surface.normal), 0.0) / (PI * density) : 0.0;
+        // Half of the guided directions are of the cosine, in every block of samples that is a power of two.
+        float counts = isGuided() ? (isByCosine(v.x) ? 2.0 : 0.0) : 1.0;
+        open = escaped ? counts : 0.0;
         if (two.weight != vec3(0.0) && next4(other).x < chance) {
             density = chance * specularDensity(h.surface, h.view, two.direction);
             specular = two.weight / chance * incoming(p, two.direction, density, other, unused, sun);

@@ -1,5 +1,5 @@
 // Random numbers of a path: two Owen-scrambled Sobol points in two dimensions for each draw, in an order of
-// their own, so that draws are independent (Burley 2020, "Practical Hash-Based Owen Scrambling"). Even and
+// their own, so that draws are uncorrelated (Burley 2020, "Practical Hash-Based Owen Scrambling"). Even and
 // odd samples are independent sequences, because the difference of their means tells the noise.
 #ifndef REFERENCE_SEQUENCE_GLSL
 #define REFERENCE_SEQUENCE_GLSL

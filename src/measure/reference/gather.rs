@@ -5,6 +5,7 @@ use super::store::{self, Sums};
 use super::{Reference, key};
 use crate::experiment::Experiment;
 use crate::graph::LightPart;
+use crate::graph::run::Execution;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
 use crate::scene::Scene;
 use std::ops::ControlFlow;
@@ -123,6 +124,8 @@ impl Tracer {
         let wanted = graph.parts.iter().map(|p| store::sum_texture(&p.name));
         let (wanted, reuse) = (wanted.collect(), self.shared.as_ref());
         let mut session = lab.build(&traced, &loaded, scene.clone(), wanted, reuse)?;
+        // Passes that do not read the sample's index run once.
+        session.set_execution(Execution::Incremental);
         let (mut kept, mut all_kept) = (Instant::now(), true);
         while now.samples < now.goal {
             frame(lab, &mut session, &mut sums, per_frame)?;

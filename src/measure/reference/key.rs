@@ -67,7 +67,7 @@ pub(super) fn shaders(loaded: &Loaded) -> String {
 }
 
 /// 16 hexadecimal digits of a hash over all inputs of the samples of an experiment of [`GRAPH`]:
-/// compiled shaders, scene content, camera, size, time, and parameters.
+/// compiled shaders, scene content, camera, size, time, parameters, and definitions of values.
 pub(super) fn key(
     traced: &Experiment,
     loaded: &Loaded,
@@ -94,5 +94,7 @@ pub(super) fn key(
         .zip(&params.values)
         .filter(|(p, _)| sampled(p));
     parts.extend(values.map(|(p, value)| format!("{} {value:?}", p.name).into()));
+    let named = loaded.graph.values.iter();
+    parts.extend(named.map(|named| format!("{} {}", named.name, named.expr.value.text).into()));
     Ok(content_id(parts, 16))
 }
