@@ -5,8 +5,8 @@ SHELL := /bin/bash
 .DEFAULT_GOAL := help
 export PATH := $(PATH):$(HOME)/.cargo/bin
 
-# Size of the demo's pictures, and more arguments of `conelab render`, for example: make demo SIZE=1920x1080 ARGS="--set voxel_dim=256"
-SIZE ?= 1280x720
+# Size of the demo's pictures (1280x720; 640x360 without a GPU), and more arguments of `conelab render`, for example: make demo SIZE=1920x1080 ARGS="--set voxel_dim=256"
+SIZE ?=
 ARGS ?=
 # Run only the tests whose names hold this, for example: make test TESTS=voxel
 TESTS ?=
@@ -38,9 +38,11 @@ demo: ## Render the built-in atrium, lit through voxels, on any Vulkan device
 	@scripts/setup.sh build run
 	@cargo build --release --locked
 	@$(CONELAB) devices
-	@$(CONELAB) render configs/rays.ron --scene atrium --size $(SIZE) $(ARGS) \
-		--json $(OUT)/stats.json -o $(OUT)/atrium.png
-	@$(CONELAB) render configs/rays.ron --scene atrium --size $(SIZE) $(ARGS) \
+	@devices=$$($(CONELAB) devices); size='$(SIZE)'; \
+	[[ -n $$size ]] || { [[ $${devices%%$$'\n'*} == *'(cpu,'* ]] && size=640x360 || size=1280x720; }; \
+	$(CONELAB) render configs/rays.ron --scene atrium --size $$size $(ARGS) \
+		--json $(OUT)/stats.json -o $(OUT)/atrium.png; \
+	$(CONELAB) render configs/rays.ron --scene atrium --size $$size $(ARGS) \
 		--set view=voxels --set voxel_view=color -o $(OUT)/voxels.png
 	@printf '\nLook at:\n  %s\n  %s\n  %s\n' \
 		'$(OUT)/atrium.png   the atrium by direct light and light that bounced' \
