@@ -185,7 +185,7 @@ class Attributes:
     injection_exposure: float
     """Radiance of a texel value of 1, because injection writes base colours whatever the lights emit. 0: E / pi for the brightest sun of irradiance E, which was 1 in the published program; 1 without a sun (0.0, 0 to 1e+06)."""
     learning: int
-    """Samples per pixel that learn where light comes from, before the first sample. They change the noise and not the mean. 0: no learning (8 samples/pixel, 0 to 1024)."""
+    """Paths per pixel that learn where light comes from, before the first sample; the first one sets the scale. They change the noise and not the mean. 0 and 1: no learning (8 samples/pixel, 0 to 64)."""
     light_bias: float
     """Distance from a surfel to the point whose shadow is looked up. Lower values let rough surfaces shadow themselves; higher ones let light past thin walls (0.1 voxels, 0 to 1)."""
     lobe_share: float
