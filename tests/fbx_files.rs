@@ -496,7 +496,7 @@ fn blender_writes_one_scene_in_two_formats() {
     near([ours.fov_y, ours.near], [theirs.fov_y, theirs.near]).unwrap();
 }
 
-/// Opens bytes as a file. Work that grows with what a file promises takes minutes; a busy machine takes seconds.
+/// Opens bytes as a file. Work without bounds takes minutes; a busy machine takes seconds.
 fn open_bytes(bytes: &[u8]) -> Result<Scene, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.fbx");

@@ -254,7 +254,7 @@ fn the_furnace_gains_what_every_bounce_must_bring() {
     assert!(least > 0.0 && most < 0.1, "{least} {most}");
     let series = |a: f64, bounces: u32| (1..=bounces).map(|k| a.powi(k as i32 - 1)).sum::<f64>();
     for bounces in [1, 2, 4, 32] {
-        // By the cosine alone, every diffuse ray brings 1 at the first bounce, whichever way it goes: no noise.
+        // Without learning every diffuse ray brings 1 at the first bounce: no noise.
         let learning = if bounces == 1 { "0" } else { "8" };
         let reference = trace(
             &lab,

@@ -67,8 +67,8 @@ vec3 incoming(vec3 p, vec3 d, float density, inout Sequence random, out bool esc
         }
         weight *= next.weight;
         if (weight == vec3(0.0)) break;
-        // Russian roulette (Arvo and Kirk 1990) by reflectance. By weight it would end paths that head for
-        // the light, which weigh least: five times the noise in a corridor with two bends.
+        // Russian roulette (Arvo and Kirk 1990) goes by reflectance. Paths that head for the light weigh
+        // least, and roulette by weight would end them.
         if (bounce > 3) {
             vec3 reflected = h.surface.albedo
                 + fresnel(h.surface, max(dot(h.surface.normal, h.view), 0.0));
